@@ -9,6 +9,10 @@
 namespace pcednet::app {
 namespace {
 
+const Choices<nn::Symmetry> kSymmetries = {{"average", nn::Symmetry::kAverage},
+                                           {"canonical", nn::Symmetry::kCanonical},
+                                           {"none", nn::Symmetry::kNone}};
+
 Choices<gls::FeatureSet> feature_sets() {
   Choices<gls::FeatureSet> choices;
   for (const gls::FeatureSet set : gls::feature_sets()) {
@@ -84,6 +88,25 @@ void check_scales(const std::filesystem::path& file, const BoundingBox& box,
   const std::string note = gls::note_on_extent(options, box.diagonal(), file.string() + ": ",
                                                {.s_min = "--s-min", .s_max = "--s-max"});
   if (!note.empty()) warn(note);
+}
+
+void add_network_options(CLI::App& command, detect::TrainOptions& options) {
+  nn::Architecture& architecture = options.architecture;
+  add_choice(command, "--network", architecture.kind, nn::kNetworkKinds, "Architecture");
+  command
+      .add_option("--classes", architecture.classes,
+                  "3: non-edge, smooth-edge, sharp-edge; 2: sharp-edge and all other points")
+      ->capture_default_str()
+      ->check(CLI::IsMember({2, 3}));
+  command
+      .add_option("--width", architecture.width, "Neurons per pair of scales (0: as in the paper)")
+      ->capture_default_str()
+      ->transform(whole_number(0, 4096));
+  add_choice(command, "--symmetry", options.symmetry, kSymmetries,
+             "Symmetry under flipped normals: average, canonical (half the work) or none");
+  command.add_flag("--context", options.context,
+                   "Also train a context network, which refines the result from the predictions "
+                   "around each point");
 }
 
 }  // namespace pcednet::app

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "pcednet/cloud/bounding_box.h"
+#include "pcednet/detect/train.h"
 #include "pcednet/gls/scale_space_options.h"
 
 namespace CLI {
@@ -23,6 +24,9 @@ void add_scale_range_options(CLI::App& command, gls::ScaleSpaceOptions& options)
 
 /// Adds --exact alone.
 void add_engine_option(CLI::App& command, gls::ScaleSpaceOptions& options);
+
+/// Adds --network, --classes, --width, --symmetry and --context.
+void add_network_options(CLI::App& command, detect::TrainOptions& options);
 
 /// Throws Error(kUsage) if the given s_min exceeds the diagonal of the cloud's box; warns if the
 /// given s_max does.

@@ -68,7 +68,9 @@ def train(clouds, labels=None, *, normals=None, start=None, name="model", classe
     threads, progress, keep_orientation
         As in :func:`classify`.
     **descriptor
-        ``scales``, ``features``, ... as in :func:`describe`.
+        ``scales``, ``features``, ... as in :func:`describe`. Unless ``s_max_ratio`` or ``s_max`` is given, the scales
+        grow with the diagonal of a cloud, so that pieces and larger clouds are not seen alike; those of ``start="general"``
+        follow the spacing of the points.
 
     Returns
     -------

@@ -327,6 +327,14 @@ class Train(CliTest):
         run("train", broken, "-o", self.folder / "m.SafeTensors", expect=3)
         self.assertEqual(os.listdir(self.folder), ["broken.ply"])
 
+    def test_says_that_scales_grow_with_the_cloud(self):
+        self.train("a.safetensors", "--epochs", 1, points=800)
+        source = self.folder / "clouds/a.ply"
+        for options in ([], ["--s-max-ratio", 8], ["--s-max", 1], ["--start", "general"]):
+            more = [] if "--start" in options else ["--epochs", 1]
+            said = run("train", source, "-o", self.folder / "m.safetensors", "--overwrite", *more, *options).stderr
+            self.assertEqual("its scales grow with the diagonal" in said, not options)
+
     def test_says_where_nothing_is_held_out(self):
         p, n, label = cube(1000)
         few = np.full(1000, 255, np.uint8)

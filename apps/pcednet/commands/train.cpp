@@ -27,10 +27,6 @@
 namespace pcednet::app {
 namespace {
 
-const Choices<nn::Symmetry> kSymmetries = {{"average", nn::Symmetry::kAverage},
-                                           {"canonical", nn::Symmetry::kCanonical},
-                                           {"none", nn::Symmetry::kNone}};
-
 enum class Recipe { kAdam, kPaper };
 
 struct TrainArguments {
@@ -228,6 +224,12 @@ void tell(const detect::TrainedModel& trained) {
   }
 }
 
+void tell_scales(const gls::ScaleRange& range) {
+  if (range.s_max > 0 || range.s_max_ratio > 0) return;
+  say("  its scales grow with the diagonal of a cloud; those of --start general, or with "
+      "--s-max-ratio 8, follow the spacing of the points, in pieces and larger clouds as well");
+}
+
 void train(const TrainArguments& arguments, const Common& common) {
   check_not_inputs(arguments.output, arguments.inputs);
   check_not_input(arguments.output, arguments.project);
@@ -252,6 +254,9 @@ void train(const TrainArguments& arguments, const Common& common) {
   if (experts.pieces) detect::join_pieces(trained.model, *experts.pieces);
   detect::save_model(arguments.output, trained.model, common.overwrite());
   tell(trained);
+  if (arguments.project.empty() && arguments.start.empty()) {
+    tell_scales(arguments.options.descriptor.range);
+  }
   const auto& context = trained.model.context;
   say(fmt::format("{} weights{}; seconds: {}\n  -> {}",
                   trained.model.network.network.parameters.size(),
@@ -295,25 +300,6 @@ void add_data_options(CLI::App& command, TrainArguments& arguments) {
                   "A model file, trained on the clouds of `generate pieces` with the same options: "
                   "where it finds a piece of a larger cloud, no expert for few points decides")
       ->needs("--expert");
-}
-
-void add_network_options(CLI::App& command, detect::TrainOptions& options) {
-  nn::Architecture& architecture = options.architecture;
-  add_choice(command, "--network", architecture.kind, nn::kNetworkKinds, "Architecture");
-  command
-      .add_option("--classes", architecture.classes,
-                  "3: non-edge, smooth-edge, sharp-edge; 2: sharp-edge and all other points")
-      ->capture_default_str()
-      ->check(CLI::IsMember({2, 3}));
-  command
-      .add_option("--width", architecture.width, "Neurons per pair of scales (0: as in the paper)")
-      ->capture_default_str()
-      ->transform(whole_number(0, 4096));
-  add_choice(command, "--symmetry", options.symmetry, kSymmetries,
-             "Symmetry under flipped normals: average, canonical (half the work) or none");
-  command.add_flag("--context", options.context,
-                   "Also train a context network, which refines the result from the predictions "
-                   "around each point");
 }
 
 void add_recipe_options(CLI::App& command, TrainArguments& arguments) {
