@@ -5,9 +5,13 @@
 #include <algorithm>
 
 #include "batch.h"
+#include "byte_size.h"
 #include "common.h"
 #include "descriptor_options.h"
+#include "free_memory.h"
 #include "pcednet/core/error.h"
+#include "pcednet/detect/describe.h"
+#include "pcednet/detect/outputs.h"
 #include "result_plan.h"
 #include "workbench/truth/read_labelled.h"
 
@@ -81,6 +85,28 @@ void check_can_learn(std::span<const detect::NamedLabels> labels,
                      const detect::TrainOptions& options) {
   check_kinds_of_edges(labels, options);
   detect::check_labels(labels, options);
+}
+
+void warn_of_memory(std::span<const LabelledFile> files, const detect::TrainOptions& options,
+                    bool describes_all) {
+  constexpr std::uint64_t kPrepared = 140, kEstimatingNormals = 640;  // bytes a point, measured
+  const std::uint64_t row = detect::row_width(options.descriptor) * sizeof(float);
+  std::uint64_t points = 0, training = 0, normals = 0;
+  for (const auto& [path, cloud] : files) {
+    const auto labelled = std::ranges::count_if(cloud.labels, [&](std::uint8_t label) {
+      return detect::is_learnt_from(label, options.table);
+    });
+    const auto described = describes_all ? cloud.size() : static_cast<std::size_t>(labelled);
+    points += cloud.size();
+    training += kPrepared * cloud.size() + row * described;
+    if (!cloud.has_normals()) normals = std::max(normals, kEstimatingNormals * cloud.size());
+  }
+  const std::uint64_t most = std::max(training, normals), free = free_memory();
+  if (most <= free) return;
+  warn(
+      fmt::format("train: {} points may take {} of memory, more than the {} that are free; the "
+                  "surroundings of the labelled points alone take less",
+                  points, size_text(most), size_text(free)));
 }
 
 }  // namespace pcednet::app

@@ -31,4 +31,9 @@ std::vector<LabelledFile> read_labelled_files(const std::vector<std::string>& in
 void check_can_learn(std::span<const detect::NamedLabels> labels,
                      const detect::TrainOptions& options);
 
+/// Warns if the training may take more memory than is free; `describes_all`: not the labelled
+/// points alone.
+void warn_of_memory(std::span<const LabelledFile> files, const detect::TrainOptions& options,
+                    bool describes_all);
+
 }  // namespace pcednet::app

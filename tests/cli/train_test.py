@@ -1,6 +1,8 @@
 """pcednet train: from labelled files to a model file, and what can go wrong on the way."""
 import json
 import os
+import re
+import resource
 import signal
 import struct
 import subprocess
@@ -326,6 +328,19 @@ class Train(CliTest):
             self.assertIn(f"{name}: must end in .safetensors", said)
         run("train", broken, "-o", self.folder / "m.SafeTensors", expect=3)
         self.assertEqual(os.listdir(self.folder), ["broken.ply"])
+
+    def test_warns_of_too_little_memory(self):
+        p, n, label = cube(400000)
+        few = np.where(np.arange(len(p)) % 1000 < 3, label, 255)
+        cloud, limit = self.folder / "a.ply", 200 << 20
+        write_ply(cloud, p, n, few)
+        command = [PROGRAM, "train", cloud, "-o", self.folder / "m.safetensors", "--overwrite", "--threads", "1"]
+        for options, warns in ((["--start", "general"], True), (["--epochs", "1"], False)):
+            done = subprocess.run([*command, *options], stderr=subprocess.PIPE, text=True, timeout=300,
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+            self.assertEqual(bool(re.search(r"warning: train: 400000 points may take 2\d\d MiB of memory, more than the "
+                                            r"\d+ MiB that are free", done.stderr)), warns, done.stderr)
+            self.assertIn(done.returncode, (0, 1), done.stderr)  # what is not free may suffice or not
 
     def test_says_that_scales_grow_with_the_cloud(self):
         self.train("a.safetensors", "--epochs", 1, points=800)

@@ -177,6 +177,7 @@ detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common&
   } else if (!only) {
     check_can_learn(labels_of(files), options);
   }
+  if (!only) warn_of_memory(files, options, start.has_value());
   std::vector<detect::TrainingCloud> clouds;
   for (LabelledFile& file : files) {
     auto prepared = prepare(file.path, file.cloud, arguments.preparation, progress);
