@@ -34,6 +34,7 @@ std::string why_refused(const CLI::ParseError& error, const CLI::App& app) {
   const bool has_more = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
   std::string why = lacks ? missing_command(app) : "";
   if (why.empty() && (lacks || has_more)) why = unknown_option(app);
+  if (why.empty() && has_more) why = surplus_input(app);
   return why.empty() ? error.what() : why;
 }
 

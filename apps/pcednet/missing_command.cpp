@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <numeric>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -68,8 +70,23 @@ std::string unknown_option(const CLI::App& app) {
   for (const CLI::Option* one : last->get_options()) {
     if (!one->get_lnames().empty()) names.push_back("--" + one->get_lnames().front());
   }
+  std::error_code ignored;
+  const bool is_file = std::filesystem::exists(words.front(), ignored);
   return fmt::format("there is no option {} of {}{}", option, last->get_name(),
-                     question(option, names));
+                     is_file ? fmt::format("; the file of this name is ./{}", words.front())
+                             : question(option, names));
+}
+
+std::string surplus_input(const CLI::App& app) {
+  const CLI::App* last = last_command(app);
+  const std::vector<std::string> words = last->remaining();
+  if (words.empty()) return "";
+  for (const CLI::Option* one : last->get_options()) {
+    if (!one->get_positional() || one->get_expected_max() != 1) continue;
+    return fmt::format("{} takes one {}; not expected: {}", last->get_name(), one->get_name(true),
+                       words.front());
+  }
+  return "";
 }
 
 std::string missing_command(const CLI::App& app) {

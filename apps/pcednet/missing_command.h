@@ -14,4 +14,8 @@ std::string missing_command(const CLI::App& app);
 /// for; empty if the first word that was not expected is no option.
 std::string unknown_option(const CLI::App& app);
 
+/// After a parsing that failed: the first word that is one input too many; empty if the command
+/// takes several.
+std::string surplus_input(const CLI::App& app);
+
 }  // namespace pcednet::app

@@ -168,9 +168,17 @@ class Options(CliTest):
             self.assertIn("pcednet: " + said, run("classify", self.cloud, *words, expect=2).stderr)
         self.assertIn("there is no option --outputt of lines; did you mean --output?",
                       run("lines", self.cloud, "--outputt", "a.dxf", expect=2).stderr)
-        self.assertIn("not expected: b.ply", run("lines", self.cloud, "b.ply", "-o", "a.dxf", expect=2).stderr)
+        self.assertIn("lines takes one input; not expected: b.ply\n",
+                      run("lines", self.cloud, "b.ply", "-o", "a.dxf", expect=2).stderr)
+        self.assertIn("run takes one plan; not expected: b.json\n", run("tiles", "run", "a.json", "b.json", expect=2).stderr)
         self.assertEqual("pcednet: inputs is required\nRun with --help for more information.\n",
                          run("classify", expect=2).stderr)
+
+    def test_a_file_with_the_name_of_an_option_is_named(self):
+        (self.folder / "-scan.ply").write_bytes(self.cloud.read_bytes())
+        said = run("info", "-scan.ply", cwd=self.folder, expect=2).stderr
+        self.assertIn("there is no option -scan.ply of info; the file of this name is ./-scan.ply\n", said)
+        run("info", "./-scan.ply", cwd=self.folder)
 
     def test_a_preview_is_a_png(self):
         self.refused("classify", self.cloud, "--preview", self.folder / "x.jpg",
