@@ -125,13 +125,14 @@ class Cloud:
 
     def _truth_of_result(self):
         columns = {name: _attribute(name, self.attributes[name], len(self))
-                   for name in _core.TRUTH_COLUMNS if name in self.attributes}
-        return _core.truth_of_result([str(line) for line in self.comments], columns)
+                   for name in _core.TRUTH_COLUMNS + _core.RESULT_COLUMNS if name in self.attributes}
+        labels = None if self.labels is None else _arrays.labels(self.labels, len(self), names=self.class_names)
+        return _core.truth_of_result([str(line) for line in self.comments], columns, labels)
 
     def _truth(self, name):
         """The labels to learn from or to score against. Of a result, as for the program: those that were painted or
         those of its input, with a warning that begins with `name`, unless the labels were changed since it was read."""
-        found = self._truth_of_result() if self._has_predictions() else None
+        found = self._truth_of_result() if self.labels is None or self._has_predictions() else None
         if found is None:
             return self.labels
         labels, note = found

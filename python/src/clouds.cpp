@@ -124,9 +124,11 @@ std::vector<std::string> class_names(const std::vector<std::string>& lines) {
 }
 
 /// The labels that detect::truth_of_result() finds, or None, and its note; None for a cloud that is
-/// no result. `columns` are arrays of its kTruthColumns by name.
-py::object truth_of_result(const py::list& comments, const py::dict& columns) {
+/// no result. `columns` are arrays of its kTruthColumns and kResultColumns by name.
+py::object truth_of_result(const py::list& comments, const py::dict& columns,
+                           const OptionalArray<std::uint8_t>& own) {
   PointCloud cloud;
+  cloud.labels.assign(numbers(own).begin(), numbers(own).end());
   cloud.comments = bytes_of_texts(comments);
   for (const auto& [name, values] : columns) {
     cloud.attributes.push_back(
@@ -279,6 +281,8 @@ void add_clouds(py::module_& module) {
   module.attr("ESTIMATED_NORMALS") = std::string(detect::kEstimatedNormals);
   module.attr("TRUTH_COLUMNS") =
       std::vector<std::string>(detect::kTruthColumns.begin(), detect::kTruthColumns.end());
+  module.attr("RESULT_COLUMNS") =
+      std::vector<std::string>(detect::kResultColumns.begin(), detect::kResultColumns.end());
   module.def("truth_of_result", truth_of_result);
   module.def("class_lines", [](const py::list& comments) {
     return lines_of(classes_of(bytes_of_texts(comments)));

@@ -270,6 +270,27 @@ class Train(CliTest):
             said = run("train", las, "--las-classification", bad, "-o", self.folder / "n.safetensors", expect=2).stderr
             self.assertIn("--las-classification", said)
 
+    def test_learns_what_another_program_corrected_in_a_result(self):
+        """CloudCompare drops the comments and keeps the columns."""
+        p, n, label = cube(4000, seed=4)
+        source, cloud, las = (self.folder / name for name in ("a.ply", "b.ply", "b.las"))
+        write_ply(source, p, n)
+        run("classify", source, "-o", self.folder / "r.ply")
+        run("classify", source, "-o", las)
+        found = read_ply(self.folder / "r.ply")[0]
+        columns = {name: found[name] for name in ("scalar_p_sharp", "scalar_p_smooth")}
+        write_ply(cloud, p, n, scalar_edge_class=label.astype(np.float32), scalar_label=found["label"].astype(np.float32),
+                  **columns)
+        done = run("evaluate", cloud, "--json", "-")
+        self.assertIn("the labels are those of its column scalar_edge_class, which was corrected", done.stderr)
+        write_ply(self.folder / "true.ply", p, n, label)
+        true = run("evaluate", self.folder / "true.ply", "--json", "-")
+        scores = [json.loads(one.stdout)["clouds"][0]["mcc"] for one in (done, true)]
+        self.assertEqual(*scores)
+        self.assertLess(scores[0], 1)
+        said = run("train", las, "--start", "general", "-o", self.folder / "m.safetensors").stderr
+        self.assertIn("the labels of its column scalar_edge_class are no truth unless they were corrected", said)
+
     def test_counts_the_labels_that_are_no_classes(self):
         p, n, label = cube(1000)
         label[:30] = 5

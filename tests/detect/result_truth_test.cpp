@@ -62,7 +62,27 @@ TEST(ResultTruth, TakesColumnsOfOneLabelAPoint) {
 TEST(ResultTruth, IsOfResultsAlone) {
   PointCloud cloud = classified({1, 0, 255});
   cloud.comments.clear();
+  EXPECT_TRUE(truth_of_result(cloud)) << "by its columns, as other programs drop the comments";
+  cloud.attributes.pop_back();
+  ASSERT_FALSE(find_attribute(cloud, "scalar_p_sharp") && find_attribute(cloud, "scalar_p_smooth"));
   EXPECT_FALSE(truth_of_result(cloud));
+}
+
+TEST(ResultTruth, IsTheColumnThatWasCorrected) {
+  PointCloud cloud = classified({});
+  cloud.comments.clear();
+  set_attribute(cloud, make_attribute("scalar_p_sharp", std::vector<float>{.9f, .8f, .1f}));
+  set_attribute(cloud, make_attribute("scalar_edge_class", std::vector<float>{0, 2, 0}));
+  auto truth = truth_of_result(cloud);
+  EXPECT_EQ(truth->labels, (Labels{0, 2, 0}));
+  EXPECT_NE(truth->note.find("scalar_edge_class, which was corrected"), std::string::npos);
+  set_attribute(cloud, make_attribute("scalar_edge_class", Labels{2, 2, 0}));
+  cloud.labels = {2, 0, 255};
+  truth = truth_of_result(cloud);
+  EXPECT_EQ(truth->labels, (Labels{2, 0, 255}));
+  EXPECT_NE(truth->note.find("label, which was corrected"), std::string::npos);
+  cloud.labels.clear();  // as in LAS
+  EXPECT_EQ(truth_of_result(cloud)->labels, (Labels{2, 2, 0}));
 }
 
 }  // namespace

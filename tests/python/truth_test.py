@@ -52,6 +52,23 @@ class ResultsAsTruth(CliTest):
         del self.result.attributes["scalar_input_label"]
         self.assertEqual(self.scores(self.result, "no truth unless")["mcc"], 1)
 
+    def test_what_another_program_corrected_counts(self):
+        """CloudCompare drops the comments and keeps the columns."""
+        corrected = np.where(np.arange(3000) < 500, 0, self.predicted)
+        columns = {name: self.result[name] for name in ("scalar_p_sharp", "scalar_p_smooth")}
+        for name, classes, labels, said in (("a", corrected, self.predicted, "scalar_edge_class, which was corrected$"),
+                                            ("b", self.predicted, corrected, "label, which was corrected$"),
+                                            ("c", self.predicted, self.predicted, "no truth unless"),
+                                            ("d", corrected, None, "scalar_edge_class are no truth unless")):
+            pcednet.write(self.path(f"{name}.ply"), self.result.xyz, labels=labels,
+                          attributes={"scalar_edge_class": classes.astype(np.float32), **columns})
+            cloud = pcednet.read(self.path(f"{name}.ply"))
+            wanted = self.predicted if name == "c" else corrected
+            with self.assertWarnsRegex(pcednet.PcednetWarning, said):
+                self.assertEqual(vars(pcednet.evaluate(cloud, self.predicted)), self.expected(wanted))
+            with self.assertWarnsRegex(pcednet.PcednetWarning, said):
+                pcednet.train(cloud, start="general")
+
     def test_changed_labels_count(self):
         corrected = np.where(np.arange(3000) < 500, 0, self.predicted)
         in_place = copy.deepcopy(self.result)

@@ -27,22 +27,70 @@ std::vector<std::uint8_t> labels_in(const PointCloud& cloud, const char* column)
   return labels;
 }
 
+bool has_result_columns(const PointCloud& cloud) {
+  return std::all_of(kResultColumns.begin(), kResultColumns.end(), [&](const char* column) {
+    const Attribute* attribute = find_attribute(cloud, column);
+    return attribute && attribute->components == 1;
+  });
+}
+
+/// Other programs drop the comments and keep the columns.
+bool is_result(const PointCloud& cloud) {
+  return has_result_columns(cloud) ||
+         std::any_of(cloud.comments.begin(), cloud.comments.end(),
+                     [](const std::string& one) { return one.starts_with(kModelComment); });
+}
+
+/// Whether somebody corrected the classes rather than the labels, which were the same: those
+/// corrected agree less with the probabilities where they differ.
+bool corrects_classes(const PointCloud& cloud, const std::vector<std::uint8_t>& classes) {
+  const Attribute& p_sharp = *find_attribute(cloud, kResultColumns[1]);
+  const Attribute& p_smooth = *find_attribute(cloud, kResultColumns[2]);
+  std::size_t by_classes = 0, by_labels = 0;
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    if (classes[i] == cloud.labels[i]) continue;
+    const double sharp = p_sharp.value(i), smooth = p_smooth.value(i);
+    const EdgeClass predicted = sharp + smooth <= 0.5 ? kNonEdge
+                                : sharp >= smooth     ? kSharpEdge
+                                                      : kSmoothEdge;
+    by_classes += classes[i] == predicted ? 1 : 0;
+    by_labels += cloud.labels[i] == predicted ? 1 : 0;
+  }
+  return by_classes <= by_labels;
+}
+
+/// A result has its classes in two columns, of which another program may have corrected one.
+ResultTruth own_labels(const PointCloud& cloud) {
+  const char* unless = "no truth unless they were corrected";
+  auto classes = labels_in(cloud, kResultColumns[0]);
+  if (!classes.empty() && !cloud.has_labels()) {
+    return {std::move(classes), fmt::format("a result of pcednet: the labels of its column {} are "
+                                            "{}",
+                                            kResultColumns[0], unless)};
+  }
+  if (classes.size() != cloud.labels.size() || classes == cloud.labels ||
+      !has_result_columns(cloud)) {
+    return {.note = fmt::format("a result of pcednet: its labels are {}", unless)};
+  }
+  const bool by_classes = corrects_classes(cloud, classes);
+  const char* column = by_classes ? kResultColumns[0] : "label";
+  return {by_classes ? std::move(classes) : cloud.labels,
+          fmt::format("a result of pcednet: the labels are those of its column {}, which was "
+                      "corrected",
+                      column)};
+}
+
 }  // namespace
 
 std::optional<ResultTruth> truth_of_result(const PointCloud& cloud) {
-  if (std::none_of(cloud.comments.begin(), cloud.comments.end(),
-                   [](const std::string& one) { return one.starts_with(kModelComment); })) {
-    return std::nullopt;
-  }
+  if (!is_result(cloud)) return std::nullopt;
   for (const char* column : kTruthColumns) {
     auto labels = labels_in(cloud, column);
     if (labels.empty()) continue;
     auto note = fmt::format("a result of pcednet: the labels are those of its column {}", column);
     return ResultTruth{std::move(labels), std::move(note)};
   }
-  return ResultTruth{.note =
-                         "a result of pcednet: its labels are no truth unless they were "
-                         "corrected"};
+  return own_labels(cloud);
 }
 
 }  // namespace pcednet::detect

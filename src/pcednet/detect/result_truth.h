@@ -17,15 +17,22 @@ inline constexpr const char* kPaintedLabels = "scalar_painted_label";
 inline constexpr const char* kInputLabels = "scalar_input_label";
 inline constexpr std::array<const char*, 2> kTruthColumns = {kPaintedLabels, kInputLabels};
 
+/// The columns by which a result is known where another program dropped its comments: the classes,
+/// which are also its labels, and the probabilities.
+inline constexpr std::array<const char*, 3> kResultColumns = {"scalar_edge_class", "scalar_p_sharp",
+                                                              "scalar_p_smooth"};
+
 /// What a result holds to learn from and to score against.
 struct ResultTruth {
   std::vector<std::uint8_t> labels = {};  ///< one per point; empty if there are none but its own
   std::string note = {};                  ///< where they come from, for the user
 };
 
-/// The truth that `cloud` holds if its comments name a model, so that its own labels are
-/// predictions: the labels of the first of kTruthColumns that labels a point, whole numbers up to
-/// 255 of any type. None if the cloud is no result. Reads the comments and these columns alone.
+/// The truth that `cloud` holds if its comments name a model, or it has all of kResultColumns, so
+/// that its own labels are predictions: the labels of the first of kTruthColumns that labels a
+/// point, whole numbers up to 255 of any type. Otherwise, if classes and labels of the result
+/// differ, those that agree less with the probabilities, as they were corrected. None if the cloud
+/// is no result. Reads the comments, the labels and these columns alone.
 std::optional<ResultTruth> truth_of_result(const PointCloud& cloud);
 
 }  // namespace pcednet::detect

@@ -24,7 +24,7 @@ namespace {
 /// The labels of a result are no truth: those that were painted, or those of its input, are.
 void take_truth_of_result(io::LoadedCloud& loaded) {
   auto truth = detect::truth_of_result(loaded.cloud);
-  if (!truth) return;
+  if (!truth || (truth->labels.empty() && !loaded.cloud.has_labels())) return;
   if (!truth->labels.empty()) loaded.cloud.labels = std::move(truth->labels);
   loaded.warnings.push_back(std::move(truth->note));
 }
@@ -96,7 +96,7 @@ std::string some_values(const Attribute& attribute, std::size_t points) {
 io::LoadedCloud read_labelled(const std::filesystem::path& path) {
   io::LoadedCloud loaded = formats::read_cloud(path);
   PointCloud& cloud = loaded.cloud;
-  if (cloud.has_labels()) take_truth_of_result(loaded);
+  take_truth_of_result(loaded);
   if (cloud.empty() || cloud.has_labels()) return loaded;
   if (auto column = formats::edge_column_of(cloud)) {
     cloud.labels = std::move(column->classes);
