@@ -105,9 +105,9 @@ class Cloud:
         return self.attributes.get(f"scalar_{name}", self.attributes.get(name))
 
     def _classes(self):
-        """What a classification left, otherwise the labels."""
+        """What a classification left, unless the labels were changed since the result was read, otherwise the labels."""
         found = self._scalar("edge_class")
-        return self.labels if found is None else found
+        return self.labels if found is None or self._corrected() is not None else found
 
     def _has_float32(self):
         """Whether the positions are those of float32 and were not changed to others."""
@@ -282,6 +282,8 @@ def _parts_of(cloud):
     corrected = cloud._corrected()
     if corrected is not None:  # as labels alone, a reader of the file would take them for predictions
         attributes[_PAINTED] = corrected
+        for name in {"scalar_edge_class", "edge_class"} & set(attributes):  # what other programs show, and lines reads
+            attributes[name] = corrected.astype(attributes[name].dtype)
     comments = [str(line) for line in cloud.comments
                 if line != _core.ESTIMATED_NORMALS or cloud._has_estimates()]
     return {"xyz": _arrays.vectors(cloud.xyz, "xyz"),
