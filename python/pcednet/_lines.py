@@ -131,6 +131,8 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     min_confidence = _arrays.share(min_confidence, "min_confidence")
     if labels is None and isinstance(xyz, _clouds.Cloud):
         labels = xyz._classes()
+        if labels is not None and xyz.labels is not None and not np.array_equal(labels, xyz.labels):
+            _arrays.warn([f"{xyz.name or 'the cloud'}: its columns edge_class and label differ: edge_class is drawn"])
         if labels is not None and (np.asarray(labels) == 255).all():
             labels = None
         if labels is not None:

@@ -261,6 +261,15 @@ class Lines(CliTest):
         done = run("lines", self.labelled_cube(), *self.outputs("obj"), "--classify", "--overwrite")
         self.assertIn("its labels are not used: classified by model general", done.stderr)
 
+    def test_says_which_of_two_columns_that_differ_it_draws(self):
+        p, n, label = cube(3000)
+        cloud = self.folder / "two.ply"
+        for other, warns in ((label, False), (np.zeros_like(label), True)):
+            write_ply(cloud, p, n, other, scalar_edge_class=label)
+            said = run("lines", cloud, "-o", self.folder / "two.obj", "--overwrite").stderr
+            self.assertEqual("its columns edge_class and label differ: edge_class is drawn" in said, warns)
+            self.assertNotIn(" 0 curves", said)
+
     def test_a_column_of_another_program_is_named(self):
         p, _, label = cube(8000)
         for column, said in (("is_edge", "labels from its column is_edge"),

@@ -81,6 +81,10 @@ class ResultsAsTruth(CliTest):
                 self.assertEqual(vars(pcednet.evaluate(cloud, self.predicted)), self.expected(wanted))
             with self.assertWarnsRegex(pcednet.PcednetWarning, said):
                 pcednet.train(cloud, start="general")
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                pcednet.lines(cloud)
+            self.assertEqual(any("edge_class is drawn" in str(one.message) for one in caught), name in "ab")
 
     def test_changed_labels_count(self):
         corrected = np.where(np.arange(3000) < 500, 0, self.predicted)

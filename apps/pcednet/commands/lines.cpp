@@ -133,6 +133,9 @@ void add_given_labels(const LinesArguments& arguments, std::vector<std::uint8_t>
 /// The labels of the file: its own, otherwise those in a column of edges, which it says.
 std::vector<std::uint8_t> labels_in(const std::string& file, const PointCloud& cloud) {
   std::vector<std::uint8_t> labels = formats::labels_of(cloud, file);
+  if (cloud.has_labels() && labels != cloud.labels) {
+    warn(fmt::format("{}: its columns edge_class and label differ: edge_class is drawn", file));
+  }
   if (!labels.empty()) return labels;
   if (auto column = formats::edge_column_of(cloud)) {
     say(fmt::format("{}: labels from its column {}", file, column->column));
