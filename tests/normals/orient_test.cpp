@@ -161,6 +161,7 @@ TEST(Viewpoints, AreFacedByBothFacesOfACornerUpToItsEdge) {
   std::vector<Vec3> normals = estimate_oriented_normals(positions).normals;
   const std::size_t faced = face_viewpoints(positions, normals, viewpoints);
   EXPECT_EQ(faced, positions.size());
+  settle_slanted(positions, normals, viewpoints);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     EXPECT_GT(normals[i].dot(Vec3(1.0, -1.0, 0.0)), 0.0) << positions[i].transpose();
   }
@@ -176,6 +177,7 @@ TEST(Viewpoints, KeepTheSidesOfAThinWallApart) {
     normals.emplace_back(0.0, random.index(2) == 0 ? 1.0 : -1.0, 0.0);
   }
   face_viewpoints(positions, normals, viewpoints);
+  settle_slanted(positions, normals, viewpoints);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     EXPECT_GT(normals[i].y() * positions[i].y(), 0.0);
   }

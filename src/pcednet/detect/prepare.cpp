@@ -89,6 +89,7 @@ Oriented complete_and_orient(const Points& cloud, const PreparedCloud& prepared,
       normals::complete_and_orient_normals(prepared.positions, given, options, progress), 0};
   if (!scanners.empty()) {
     oriented.faced = normals::face_viewpoints(prepared.positions, oriented.found.normals, scanners);
+    normals::settle_slanted(prepared.positions, oriented.found.normals, scanners);
   }
   return oriented;
 }

@@ -61,11 +61,16 @@ Orientation orient_normals(NeighbourGraph& graph, std::span<const Vec3> position
 Orientation orient_points(NeighbourGraph& graph, std::span<Vec3> normals,
                           const OrientOptions& options, const Progress* progress = nullptr);
 
-/// Turns every normal to face the viewpoint of its position, as in OrientOptions, but those that
-/// are seen at a slant (a cosine below .7) to the side of their neighbours. Those whose viewpoint
-/// is not finite stay. Returns how many points have one. One viewpoint per position.
+/// Turns every normal to face the viewpoint of its position, as in OrientOptions; those whose
+/// viewpoint is not finite stay. Returns how many points have one. One viewpoint per position.
 std::size_t face_viewpoints(std::span<const Vec3> positions, std::span<Vec3> normals,
                             std::span<const Vec3> viewpoints);
+
+/// Afterwards: turns normals that are seen at a slant (a cosine below .7) where their neighbours
+/// oppose them, the more the better these are seen. Near an edge normals are between those of both
+/// faces, one of which may be hidden, and which of their sides is seen says little.
+void settle_slanted(std::span<const Vec3> positions, std::span<Vec3> normals,
+                    std::span<const Vec3> viewpoints);
 
 /// Throws Error(kUsage) unless there are as many of `what` ("normals") as positions.
 void check_size(std::string_view what, std::size_t count, std::size_t positions);
