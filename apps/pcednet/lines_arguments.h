@@ -24,6 +24,7 @@ struct LinesArguments {
   bool classify = false;
   ModelArguments model{.name = kDefaultModel};
   detect::PrepareOptions preparation;
+  std::vector<double> viewpoint;  ///< of the scanner, if it is told
   lines::LineOptions lines;
   double min_confidence = 0.0, min_dihedral = 0.0;
   std::size_t min_points = 0;

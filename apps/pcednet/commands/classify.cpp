@@ -24,6 +24,7 @@
 #include "prepare.h"
 #include "result_plan.h"
 #include "stage_clock.h"
+#include "viewpoint.h"
 #include "workbench/render/preview.h"
 
 namespace pcednet::app {
@@ -39,6 +40,7 @@ struct ClassifyArguments {
   ModelArguments model{.name = kDefaultModel};
   MethodArguments method;
   detect::PrepareOptions preparation;
+  std::vector<double> viewpoint;
   bool class_colours = false, ascii = false;
 };
 
@@ -147,6 +149,7 @@ void classify_large_file(const Job& job, const ClassifyArguments& arguments,
                          const TilesNeeded& needed, const detect::EdgeModel& model,
                          const Common& common) {
   say(needed.reason + ": classified in tiles");
+  warn_of_viewpoint_in_tiles(job.input, arguments.viewpoint);
   StageClock clock(console_progress(common));
   const TiledCloud cloud({.input = job.input,
                           .output = job.output,
@@ -198,6 +201,7 @@ void classify_file(const Job& job, const ClassifyArguments& arguments,
   const Progress& progress = clock.progress();
   clock.begin("read");
   PointCloud cloud = read_cloud(job.input);
+  set_viewpoint(job.input, arguments.viewpoint, cloud);
   check_codes_fit(arguments.codes, job, cloud);
   formats::check_positions(job.output, cloud);
   throw_if_cancelled(&progress);
@@ -309,8 +313,9 @@ void add_classify(CLI::App& app, Common& common) {
   command->add_flag("--ascii", arguments->ascii, "Write .ply and .pcd as text");
   add_method_options(*command, arguments->method);
   add_prepare_options(*command, arguments->preparation);
+  add_viewpoint_option(*command, arguments->viewpoint);
   for (const char* of_a_model : {"--model", "--no-context", "--no-boundary", "--exact", "--s-min",
-                                 "--s-max", "--keep-orientation", "--max-memory"}) {
+                                 "--s-max", "--keep-orientation", "--viewpoint", "--max-memory"}) {
     command->get_option(of_a_model)->excludes("--method");
   }
   command->callback([arguments, &common] { classify(*arguments, common); });

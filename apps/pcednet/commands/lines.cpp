@@ -26,6 +26,7 @@
 #include "pcednet/tiles/inputs.h"
 #include "prepare.h"
 #include "stage_clock.h"
+#include "viewpoint.h"
 #include "workbench/render/preview.h"
 
 namespace pcednet::app {
@@ -157,6 +158,7 @@ void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledC
   clock.begin("read");
   PointCloud& cloud = labelled.cloud;
   cloud = read_cloud(arguments.input);
+  set_viewpoint(arguments.input, arguments.viewpoint, cloud);
   warn_of_lines(arguments.input, cloud);
   throw_if_cancelled(&clock.progress());
   std::vector<std::uint8_t> given = labels_in(arguments.input, cloud);
@@ -214,6 +216,7 @@ bool has_labels(const LinesArguments& arguments, const Progress& progress) {
 /// The same for a cloud larger than memory: its points near edges.
 void read_labelled_in_tiles(const LinesArguments& arguments, const TilesNeeded& needed,
                             StageClock& clock, LabelledCloud& labelled) {
+  warn_of_viewpoint_in_tiles(arguments.input, arguments.viewpoint);
   TiledRequest request{.input = arguments.input,
                        .output = arguments.outputs.front(),
                        .model = arguments.model,
@@ -378,6 +381,7 @@ void add_lines(CLI::App& app, Common& common) {
   add_model_options(*command, arguments->model);
   add_memory_option(*command, arguments->memory);
   add_prepare_options(*command, arguments->preparation);
+  add_viewpoint_option(*command, arguments->viewpoint);
   for (const char* of_a_model :
        {"--model", "--no-context", "--no-boundary", "--exact", "--s-min", "--s-max"}) {
     command->get_option(of_a_model)->each([arguments](const std::string&) {

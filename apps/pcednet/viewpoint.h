@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "pcednet/cloud/point_cloud.h"
+
+namespace CLI {
+class App;
+}
+
+namespace pcednet::app {
+
+/// Adds --viewpoint X Y Z.
+void add_viewpoint_option(CLI::App& command, std::vector<double>& viewpoint);
+
+/// Tells the cloud where the scanner stood that saw all its points; nothing for an empty
+/// `viewpoint`. Throws Error(kUsage) if the cloud is of several scans.
+void set_viewpoint(const std::filesystem::path& file, const std::vector<double>& viewpoint,
+                   PointCloud& cloud);
+
+/// Warns that a cloud read in tiles has none.
+void warn_of_viewpoint_in_tiles(const std::filesystem::path& file,
+                                const std::vector<double>& viewpoint);
+
+}  // namespace pcednet::app
