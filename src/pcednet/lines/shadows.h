@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "pcednet/lines/ordered_points.h"
@@ -8,7 +10,8 @@
 
 namespace pcednet::lines {
 
-/// The points of each scanner that is known, by the direction in which it saw them.
+/// The points of each scanner that is known and saw hundreds, by the direction in which it saw
+/// them.
 class Shadows {
  public:
   explicit Shadows(const OrderedPoints& cloud);
@@ -20,13 +23,12 @@ class Shadows {
 
  private:
   struct View {
-    Vec3 scanner;
     std::vector<std::uint32_t> points;  ///< ascending
     spatial::KdTree beams;              ///< unit, of the points
   };
 
   const OrderedPoints& cloud_;
-  std::vector<View> views_;
+  std::map<std::array<double, 3>, View> views_;  ///< by the scanner's place
 };
 
 }  // namespace pcednet::lines
