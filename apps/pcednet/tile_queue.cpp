@@ -25,9 +25,13 @@ std::optional<std::size_t> TileQueue::next() {
     std::deque<std::size_t>& from = is_fresh ? fresh_ : busy_;
     const std::size_t tile = from.front();
     from.pop_front();
-    if (is_done_(tile)) continue;
-    if (mark(tile) || !is_fresh) return tile;
-    busy_.push_back(tile);
+    if (!mark(tile) && is_fresh) {
+      busy_.push_back(tile);
+      continue;
+    }
+    // Asked only now: another run may have done it and taken off its mark meanwhile.
+    if (!is_done_(tile)) return tile;
+    if (marked_.count(tile) > 0) finish(tile);
   }
   return std::nullopt;
 }

@@ -17,8 +17,8 @@ namespace pcednet::app {
 /// that a killed run left does no more than that.
 class TileQueue {
  public:
-  /// `is_done` is asked when the turn of a tile comes: true leaves it out. The plan must outlive
-  /// the queue.
+  /// `is_done` is asked when the turn of a tile comes and it is marked: true leaves it out. The
+  /// plan must outlive the queue.
   TileQueue(const tiles::Plan& plan, const std::vector<std::size_t>& ids,
             std::function<bool(std::size_t tile)> is_done);
   TileQueue(const TileQueue&) = delete;
