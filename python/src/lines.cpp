@@ -11,6 +11,7 @@
 #include "models.h"
 #include "named.h"
 #include "pcednet/core/error.h"
+#include "pcednet/detect/averages.h"
 #include "pcednet/io/drawing/drawing.h"
 #include "pcednet/io/las/las.h"
 #include "pcednet/io/length_units.h"
@@ -54,7 +55,7 @@ py::tuple find_lines(const Array<double>& xyz, bool is_float32,
                              .p_smooth = numbers(p_smooth),
                              .scanners = cloud.scanners()};
     detect::PreparedCloud made;
-    detect::Classification of_averages;
+    detect::Classification fewer;
     if (!prepared) {
       made = cloud.prepare({.average_noise = true}, job);
       points.positions = made.positions;
@@ -63,11 +64,15 @@ py::tuple find_lines(const Array<double>& xyz, bool is_float32,
       notes = made.notes;
     }
     if (made.is_averaged()) {
+      detect::Classification given;
+      given.classes.assign(points.classes.begin(), points.classes.end());
+      given.p_sharp.assign(points.p_sharp.begin(), points.p_sharp.end());
+      given.p_smooth.assign(points.p_smooth.begin(), points.p_smooth.end());
+      fewer = of_averages(made, std::move(given));
       points.scanners = {};
-      of_averages = found_of_averages(made, {points.classes, points.p_sharp, points.p_smooth});
-      points.classes = of_averages.classes;
-      points.p_sharp = of_averages.p_sharp;
-      points.p_smooth = of_averages.p_smooth;
+      points.classes = fewer.classes;
+      points.p_sharp = fewer.p_sharp;
+      points.p_smooth = fewer.p_smooth;
     }
     curves = lines::find_lines(points, options, job, &scale);
     const std::string rounded = prepared ? "" : note_on_float(is_float32, made, {}, scale.spacing);

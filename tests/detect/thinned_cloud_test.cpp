@@ -213,7 +213,7 @@ TEST(Averages, TakeTheLabelsOfMostOfTheirPoints) {
   Classification found;
   found.classes = {kSharpEdge, kSharpEdge, kNonEdge, kUnlabelled, 9, kUnlabelled, kSharpEdge};
   found.p_sharp = {0.9f, 0.6f, 0.3f, 0.0f, 0.0f, 0.0f, 1.0f};
-  const Classification fewer = found_of_averages(prepared, {found.classes, found.p_sharp});
+  const Classification fewer = of_averages(prepared, found);
   EXPECT_EQ(fewer.classes, (std::vector<std::uint8_t>{kSharpEdge, kNonEdge, kUnlabelled}));
   ASSERT_EQ(fewer.p_sharp.size(), 3u);
   EXPECT_NEAR(fewer.p_sharp[0], 0.6f, 1e-6);

@@ -159,9 +159,8 @@ TEST(Viewpoints, AreFacedByBothFacesOfACornerUpToItsEdge) {
     viewpoints.emplace_back(6.0, 3.0, 1.0);
   }
   std::vector<Vec3> normals = estimate_oriented_normals(positions).normals;
-  const std::size_t faced = face_viewpoints(positions, normals, viewpoints);
+  const std::size_t faced = face_scanners(positions, normals, viewpoints);
   EXPECT_EQ(faced, positions.size());
-  settle_slanted(positions, normals, viewpoints);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     EXPECT_GT(normals[i].dot(Vec3(1.0, -1.0, 0.0)), 0.0) << positions[i].transpose();
   }
@@ -176,8 +175,7 @@ TEST(Viewpoints, KeepTheSidesOfAThinWallApart) {
     viewpoints.emplace_back(-6.0, 5.0 * side, 1.0);
     normals.emplace_back(0.0, random.index(2) == 0 ? 1.0 : -1.0, 0.0);
   }
-  face_viewpoints(positions, normals, viewpoints);
-  settle_slanted(positions, normals, viewpoints);
+  face_scanners(positions, normals, viewpoints);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     EXPECT_GT(normals[i].y() * positions[i].y(), 0.0);
   }

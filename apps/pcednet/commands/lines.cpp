@@ -125,10 +125,7 @@ void add_given_labels(const LinesArguments& arguments, std::vector<std::uint8_t>
   preparation.average_noise = true;
   labelled.prepared = prepare(arguments.input, cloud, preparation, progress);
   labelled.given = true;
-  if (labelled.prepared.is_averaged()) {
-    found = found_of_averages(labelled.prepared, {found.classes, found.p_sharp, found.p_smooth});
-  }
-  take(std::move(found), labelled);
+  take(of_averages(labelled.prepared, std::move(found)), labelled);
 }
 
 /// The labels of the file: its own, otherwise those in a column of edges, which it says.
@@ -253,7 +250,9 @@ std::vector<Curve> find_curves(const LinesArguments& arguments, const LabelledCl
                                const Progress& progress, lines::LineScale& scale) {
   std::vector<Curve> curves;
   std::vector<Vec3> scanners;
-  if (!labelled.prepared.is_averaged()) scanners = scanner_of_points(labelled.cloud);
+  if (arguments.lines.boundaries && !labelled.prepared.is_averaged()) {
+    scanners = scanner_of_points(labelled.cloud);
+  }
   with_name_in_errors(arguments.input, [&] {
     curves = lines::find_lines({.positions = labelled.prepared.positions,
                                 .normals = labelled.prepared.normals,

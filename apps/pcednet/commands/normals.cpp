@@ -94,8 +94,7 @@ void run(const NormalsRequest& request, const Common& common) {
   normals::PreparedNormals prepared = make_normals(request, cloud, console_progress(common));
   if (const auto scanners = scanner_of_points(cloud);
       !request.keep && !request.eye() && !scanners.empty()) {
-    const std::size_t faced = normals::face_viewpoints(cloud.positions, prepared.normals, scanners);
-    normals::settle_slanted(cloud.positions, prepared.normals, scanners);
+    const std::size_t faced = normals::face_scanners(cloud.positions, prepared.normals, scanners);
     say(fmt::format("{}: {} points turned towards their scanner", request.input, faced));
   }
   cloud.normals = prepared.normals;

@@ -20,7 +20,7 @@ std::vector<T> for_all(const PreparedCloud& prepared, const std::vector<T>& valu
   return all;
 }
 
-std::vector<float> means_of(const PreparedCloud& prepared, std::span<const float> values) {
+std::vector<float> means_of(const PreparedCloud& prepared, const std::vector<float>& values) {
   if (values.empty()) return {};
   std::vector<double> sums(prepared.positions.size(), 0.0), counts(sums.size(), 0.0);
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -57,10 +57,11 @@ std::vector<Vec3> of_all_points(const PreparedCloud& prepared, std::vector<Vec3>
   return for_all(prepared, normals, Vec3::Zero());
 }
 
-Classification found_of_averages(const PreparedCloud& prepared, const GivenLabels& labels) {
+Classification of_averages(const PreparedCloud& prepared, Classification found) {
+  if (!prepared.is_averaged()) return found;
   std::vector<std::array<std::uint32_t, kBoundary + 1>> votes(prepared.positions.size());
-  for (std::size_t i = 0; i < labels.classes.size(); ++i) {
-    const std::uint8_t its_class = labels.classes[i];
+  for (std::size_t i = 0; i < found.classes.size(); ++i) {
+    const std::uint8_t its_class = found.classes[i];
     if (prepared.average_of[i] == kNoAverage || its_class == kUnlabelled) continue;
     ++votes[prepared.average_of[i]][its_class <= kBoundary ? its_class : 0];
   }
@@ -70,8 +71,8 @@ Classification found_of_averages(const PreparedCloud& prepared, const GivenLabel
     fewer.classes.push_back(static_cast<std::uint8_t>(most - of_point.begin()));
     if (*most == 0) fewer.classes.back() = kUnlabelled;
   }
-  fewer.p_sharp = means_of(prepared, labels.p_sharp);
-  fewer.p_smooth = means_of(prepared, labels.p_smooth);
+  fewer.p_sharp = means_of(prepared, found.p_sharp);
+  fewer.p_smooth = means_of(prepared, found.p_smooth);
   fewer.counts = count_classes(fewer.classes);
   return fewer;
 }

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "pcednet/detect/classify.h"
@@ -27,15 +26,9 @@ Classification of_all_points(const PreparedCloud& prepared, Classification found
 /// The same for normals, or none: (0,0,0) for points that are not finite.
 std::vector<Vec3> of_all_points(const PreparedCloud& prepared, std::vector<Vec3> normals);
 
-/// Edge classes of all points, and their probabilities or none.
-struct GivenLabels {
-  std::span<const std::uint8_t> classes;
-  std::span<const float> p_sharp = {}, p_smooth = {};
-};
-
-/// The other way, from the edge classes of all points of a cloud that was averaged: each average
-/// has that of most of its points (others than these four are non-edge) and their mean
-/// probabilities, if there are any.
-Classification found_of_averages(const PreparedCloud& prepared, const GivenLabels& labels);
+/// The other way, from the edge classes of all points: each average has that of most of its points
+/// (others than these four are non-edge) and their mean probabilities, if there are any; `found`
+/// itself unless points were averaged.
+Classification of_averages(const PreparedCloud& prepared, Classification found);
 
 }  // namespace pcednet::detect

@@ -88,8 +88,7 @@ Oriented complete_and_orient(const Points& cloud, const PreparedCloud& prepared,
   Oriented oriented{
       normals::complete_and_orient_normals(prepared.positions, given, options, progress), 0};
   if (!scanners.empty()) {
-    oriented.faced = normals::face_viewpoints(prepared.positions, oriented.found.normals, scanners);
-    normals::settle_slanted(prepared.positions, oriented.found.normals, scanners);
+    oriented.faced = normals::face_scanners(prepared.positions, oriented.found.normals, scanners);
   }
   return oriented;
 }
@@ -323,12 +322,11 @@ PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
     }
     return prepared;
   }
+  Points used = cloud;
   if (options.average_noise && !cloud.has_normals() && average_noise(prepared, progress)) {
-    const Points averages = {prepared.positions, {}, [] { return std::vector<Vec3>(); }};
-    estimate_missing(prepared, averages, progress);
-  } else {
-    estimate_missing(prepared, cloud, progress);
+    used = {prepared.positions, {}, [] { return std::vector<Vec3>(); }};
   }
+  estimate_missing(prepared, used, progress);
   if (prepared.made.empty()) note_misfits(prepared);
   if (prepared.made.empty() && !options.keep_orientation) orient_mixed(prepared, cloud, progress);
   note_unusable(prepared);

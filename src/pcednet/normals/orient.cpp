@@ -8,6 +8,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/half_space.h"
+#include "pcednet/core/parallel.h"
 #include "pcednet/core/parallel_loops.h"
 #include "pcednet/normals/neighbour_count.h"
 #include "pcednet/normals/outward.h"
@@ -117,6 +118,64 @@ std::vector<Vec3> first_normals(const NeighbourGraph& graph, std::span<const Vec
   return first;
 }
 
+/// How a normal lies among those of its neighbours.
+struct Opposition {
+  bool any = false;   ///< a neighbour is more than 90 degrees from it
+  bool most = false;  ///< they are in the mean, by how well they are seen
+};
+
+Opposition opposition(std::uint32_t point, std::span<const spatial::Neighbour> near,
+                      std::span<const Vec3> normals, std::span<const float> seen) {
+  constexpr double kBack = -0.95;   // cosine to a normal on the other side of a wall
+  constexpr double kOpposed = 0.1;  // mean cosine
+  Opposition found;
+  double sum = 0.0, weights = 0.0;
+  for (const spatial::Neighbour& other : near) {
+    const double cosine = normals[point].dot(normals[other.index]);
+    if (other.index == point || cosine < kBack) continue;
+    const double weight = static_cast<double>(seen[other.index]);
+    found.any = found.any || cosine < 0.0;
+    sum += weight * cosine;
+    weights += weight;
+  }
+  found.most = sum < -kOpposed * weights;
+  return found;
+}
+
+/// See face_scanners(); the normals face them.
+void settle_slanted(std::span<const Vec3> positions, std::span<Vec3> normals,
+                    std::span<const Vec3> scanners) {
+  constexpr double kSlanted = 0.7;  // cosine to the beam
+  constexpr std::size_t kBeside = 12;
+  constexpr int kSettlings = 4;
+  std::vector<float> seen(positions.size(), 0.0f);
+  std::vector<std::uint32_t> doubtful;
+  for (std::uint32_t i = 0; i < positions.size(); ++i) {
+    const Vec3 beam = scanners[i] - positions[i];
+    if (!beam.allFinite() || beam.isZero(0.0)) continue;
+    seen[i] = static_cast<float>(std::abs(normals[i].dot(beam.normalized())));
+    if (seen[i] < kSlanted) doubtful.push_back(i);
+  }
+  if (doubtful.empty()) return;
+  const spatial::KdTree tree(positions);
+  for (int round = 0; round < kSettlings && !doubtful.empty(); ++round) {
+    std::vector<Opposition> found(doubtful.size());
+    parallel_blocks(doubtful.size(), 256, [&](std::size_t begin, std::size_t end) {
+      std::vector<spatial::Neighbour> near;
+      for (std::size_t k = begin; k < end; ++k) {
+        tree.nearest(positions[doubtful[k]], kBeside + 1, near);
+        found[k] = opposition(doubtful[k], near, normals, seen);
+      }
+    });
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < doubtful.size(); ++k) {
+      if (found[k].most) turn(normals[doubtful[k]], true);
+      if (found[k].any) doubtful[left++] = doubtful[k];
+    }
+    doubtful.resize(left);
+  }
+}
+
 }  // namespace
 
 void check_size(std::string_view what, std::size_t count, std::size_t positions) {
@@ -137,48 +196,11 @@ std::size_t face_viewpoints(std::span<const Vec3> positions, std::span<Vec3> nor
   return faced;
 }
 
-void settle_slanted(std::span<const Vec3> positions, std::span<Vec3> normals,
-                    std::span<const Vec3> viewpoints) {
-  check_size("normals", normals.size(), positions.size());
-  check_size("viewpoints", viewpoints.size(), positions.size());
-  constexpr double kSlanted = 0.7;  // cosine to the beam
-  constexpr double kBack = -0.95;   // of a normal on the other side of a wall
-  constexpr std::size_t kNeighbours = 12;
-  constexpr double kOpposed = 0.1;  // mean cosine
-  constexpr int kRounds = 4;
-  std::vector<float> seen(positions.size(), 0.0f);
-  std::vector<std::uint32_t> doubtful;
-  for (std::uint32_t i = 0; i < positions.size(); ++i) {
-    const Vec3 beam = viewpoints[i] - positions[i];
-    if (!beam.allFinite() || beam.isZero(0.0)) continue;
-    seen[i] = static_cast<float>(std::abs(normals[i].dot(beam.normalized())));
-    if (seen[i] < kSlanted) doubtful.push_back(i);
-  }
-  if (doubtful.empty()) return;
-  const spatial::KdTree tree(positions);
-  for (int round = 0; round < kRounds && !doubtful.empty(); ++round) {
-    std::vector<std::uint8_t> opposed(doubtful.size(), 0), turns(doubtful.size(), 0);
-    parallel_for_each(doubtful.size(), [&](std::size_t k) {
-      std::vector<spatial::Neighbour> near;
-      tree.nearest(positions[doubtful[k]], kNeighbours + 1, near);
-      double sum = 0.0, weights = 0.0;
-      for (const spatial::Neighbour& other : near) {
-        const double cosine = normals[doubtful[k]].dot(normals[other.index]);
-        if (other.index == doubtful[k] || cosine < kBack) continue;
-        const double weight = static_cast<double>(seen[other.index]);
-        opposed[k] |= cosine < 0.0;
-        sum += weight * cosine;
-        weights += weight;
-      }
-      turns[k] = sum < -kOpposed * weights;
-    });
-    std::size_t left = 0;
-    for (std::size_t k = 0; k < doubtful.size(); ++k) {
-      if (turns[k]) turn(normals[doubtful[k]], true);
-      if (opposed[k]) doubtful[left++] = doubtful[k];
-    }
-    doubtful.resize(left);
-  }
+std::size_t face_scanners(std::span<const Vec3> positions, std::span<Vec3> normals,
+                          std::span<const Vec3> scanners) {
+  const std::size_t faced = face_viewpoints(positions, normals, scanners);
+  settle_slanted(positions, normals, scanners);
+  return faced;
 }
 
 Orientation orient_points(NeighbourGraph& graph, std::span<Vec3> normals,

@@ -66,11 +66,12 @@ Orientation orient_points(NeighbourGraph& graph, std::span<Vec3> normals,
 std::size_t face_viewpoints(std::span<const Vec3> positions, std::span<Vec3> normals,
                             std::span<const Vec3> viewpoints);
 
-/// Afterwards: turns normals that are seen at a slant (a cosine below .7) where their neighbours
-/// oppose them, the more the better these are seen. Near an edge normals are between those of both
-/// faces, one of which may be hidden, and which of their sides is seen says little.
-void settle_slanted(std::span<const Vec3> positions, std::span<Vec3> normals,
-                    std::span<const Vec3> viewpoints);
+/// The same for scanners, but for normals that are seen at a slant (a cosine below .7): these are
+/// turned where their neighbours oppose them, the more the better these are seen. Near an edge
+/// normals are between those of both faces, one of which may be hidden, and which of their sides is
+/// seen says little.
+std::size_t face_scanners(std::span<const Vec3> positions, std::span<Vec3> normals,
+                          std::span<const Vec3> scanners);
 
 /// Throws Error(kUsage) unless there are as many of `what` ("normals") as positions.
 void check_size(std::string_view what, std::size_t count, std::size_t positions);

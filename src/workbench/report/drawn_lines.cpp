@@ -18,14 +18,14 @@ OrderedJson find_drawn_lines(const detect::PreparedCloud& cloud,
                              const Progress* progress) {
   auto drawn = OrderedJson::array();
   if (!(scene.size > 0.0)) return drawn;
-  detect::Classification of_averages;
-  if (cloud.is_averaged()) of_averages = found_of_averages(cloud, {classes});
-  const auto curves =
-      lines::find_lines({.positions = cloud.positions,
-                         .normals = cloud.normals,
-                         .classes = cloud.is_averaged() ? of_averages.classes : classes,
-                         .curve = cloud.curve},
-                        {}, progress);
+  detect::Classification found;
+  found.classes.assign(classes.begin(), classes.end());
+  found = of_averages(cloud, std::move(found));
+  const auto curves = lines::find_lines({.positions = cloud.positions,
+                                         .normals = cloud.normals,
+                                         .classes = found.classes,
+                                         .curve = cloud.curve},
+                                        {}, progress);
   for (const lines::Curve& curve : curves) {
     auto path = OrderedJson::array();
     for (const Vec3& vertex : lines::sampled(curve, kDrawnTolerance * scene.size)) {
