@@ -53,6 +53,7 @@ class Options(CliTest):
         plan = ("tiles", "plan", self.cloud, "-o", self.folder / "p.json", "--tile")
         for arguments in ((*convert, "--noise", "nan"), (*convert, "--noise", "-1"),
                           (*convert, "--noise", "1e300"),
+                          (*convert, "--spacing", "0"), (*convert, "--spacing", "inf"),
                           (*convert, "--subsample", "nan"), (*convert, "--subsample", "2"),
                           (*classify, "--method", "ca", "--threshold", "nan"),
                           (*classify, "--method", "ca", "--threshold", "-1"),
@@ -100,7 +101,7 @@ class Options(CliTest):
                 ("--octaves requires --s-max-ratio", "train", self.cloud, "-o", self.out, "--octaves"),
                 ("--ascii is for .ply and .pcd", "convert", self.cloud, "-o", self.folder / "x.las", "--ascii"),
                 ("--ascii is for .ply and .pcd", "classify", self.cloud, "-o", self.folder / "x.xyz", "--ascii"),
-                ("--seed requires --noise, --subsample or --sample", "convert", self.cloud, "-o", self.out, "--seed", 3),
+                ("--seed requires --noise, --spacing, --subsample or --sample", "convert", self.cloud, "-o", self.out, "--seed", 3),
                 ("--exact excludes --eps", "describe", self.cloud, "-o", self.folder / "x.npy", "--exact", "--eps", 0.2),
                 ("--view is for .svg", *lines, self.folder / "x.dxf", "--view", "front"),
                 ("--unit is for .dxf .svg files", *lines, self.folder / "x.obj", "--unit", "mm"),

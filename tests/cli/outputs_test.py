@@ -124,7 +124,8 @@ class Outputs(CliTest):
                               ("info", self.cloud, "--json", output),
                               ("info", self.cloud, "--vpc", output),
                               ("evaluate", self.cloud, "--json", output),
-                              ("convert", self.cloud, "-o", output, "--subsample", 0.1)):
+                              ("convert", self.cloud, "-o", output, "--subsample", 0.1),
+                              ("convert", self.cloud, "-o", output, "--spacing", 0.1)):
                 said = run(*arguments, "--overwrite", expect=2).stderr
                 self.assertIn(f"{output}: is the input", said)
         self.assertEqual(self.cloud.read_bytes(), before)

@@ -59,6 +59,10 @@ const char* const kAsciiStl =
     "solid a\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n"
     "   vertex 0 1 0\n  endloop\n endfacet\nendsolid a\n";
 
+const char* const kPtx =
+    "2\n2\n4 5 6\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n4 5 6 1\n1 2 3 .5 7 8 9\n"
+    "0 0 0 .5\n3 2 1 .5 7 8 9\n1 1 1 1 0 0 0\n";
+
 /// A small file of every format and encoding.
 std::vector<Example> examples(const Scratch& scratch) {
   const PointCloud cloud = sample_cloud(5);
@@ -90,6 +94,7 @@ std::vector<Example> examples(const Scratch& scratch) {
       {"a.obj", written("a.obj", false) + "f 1//1 2//2 -1//-1\n", false},
       {"a.stl", stl_example(), true},
       {"text.stl", kAsciiStl, false},
+      {"a.ptx", kPtx, false},
       {"a.xyz", written("a.xyz", false), false},
       {"a.csv", written("a.csv", false), false},
       {"a.pts", written("a.pts", false), false},
@@ -172,7 +177,7 @@ TEST(Robustness, SurvivesFlippedBytes) {
 TEST(Robustness, SurvivesNoise) {
   const Scratch scratch;
   Random random(43);
-  for (const char* name : {"a.ply", "a.pcd", "a.obj", "a.stl", "a.xyz", "a.csv"}) {
+  for (const char* name : {"a.ply", "a.pcd", "a.obj", "a.stl", "a.ptx", "a.xyz", "a.csv"}) {
     for (int i = 0; i < 300; ++i) {
       std::string bytes = i % 2 ? "" : std::string(name) == "a.ply" ? "ply\n" : "# .PCD\n";
       for (std::size_t n = random.index(300); n > 0; --n) {
@@ -202,7 +207,7 @@ TEST(ReadCloud, SaysWhatItWouldAccept) {
   EXPECT_TRUE(contains(message("a.las", "LASF"), "ends within the LAS header"));
   EXPECT_TRUE(contains(message("a.laz", "LA"), "must begin with LASF"));
   for (const char* name :
-       {"a.ply", "a.pcd", "a.las", "a.e57", "a.obj", "a.stl", "a.xyz", "a.csv"}) {
+       {"a.ply", "a.pcd", "a.las", "a.e57", "a.obj", "a.stl", "a.ptx", "a.xyz", "a.csv"}) {
     EXPECT_TRUE(contains(message(name, ""), std::string(name) + ": the file is empty")) << name;
   }
   EXPECT_TRUE(contains(message("a.e57", "ASTM-E57"), "ends at byte"));

@@ -151,6 +151,40 @@ TEST(Perturb, SubsamplesAreUniformAndNested) {
   EXPECT_TRUE(numbers(0).empty());
 }
 
+TEST(Perturb, ThinsToPointsThatAreApart) {
+  PointCloud cloud = box_of_points(5000);
+  for (std::size_t i = 0; i < 4000; ++i) cloud.positions[i] *= 0.1;  // far denser there
+  cloud.positions[4000] = cloud.positions[4001];
+  cloud.positions[4002].x() = NAN;
+  const double spacing = 0.1 * bounding_box(cloud.positions).diagonal();
+  const PointCloud kept = thin(cloud, {.spacing = spacing});
+  check_consistent(kept);
+  ASSERT_GT(kept.size(), 50u);
+  ASSERT_LT(kept.size(), 1000u);
+  const auto nearest = [&](const Vec3& at, const Vec3& other_than) {
+    double least = INFINITY;
+    for (const Vec3& p : kept.positions) {
+      if (p != other_than) least = std::min(least, (p - at).norm());
+    }
+    return least;
+  };
+  double previous = -1;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    EXPECT_GE(nearest(kept.positions[i], kept.positions[i]), spacing);
+    const double number = kept.attributes[0].value(i);
+    EXPECT_GT(number, previous);
+    previous = number;
+    EXPECT_EQ(kept.positions[i], cloud.positions[static_cast<std::size_t>(number)]);
+  }
+  for (const Vec3& p : cloud.positions) {
+    if (!p.allFinite()) continue;
+    EXPECT_LT(nearest(p, Vec3::Constant(NAN)), spacing);
+  }
+  EXPECT_EQ(reversed(thin(cloud, {.spacing = spacing})).positions,
+            thin(reversed(cloud), {.spacing = spacing}).positions);
+  EXPECT_NE(thin(cloud, {.spacing = spacing, .seed = 2}).positions, kept.positions);
+}
+
 TEST(Perturb, RefusesWhatMakesNoSense) {
   PointCloud cloud = box_of_points(10);
   EXPECT_ERROR(ErrorKind::kUsage, add_gaussian_noise(cloud, {.sigma = -1}));
@@ -161,6 +195,10 @@ TEST(Perturb, RefusesWhatMakesNoSense) {
   EXPECT_ERROR(ErrorKind::kInsufficient, add_gaussian_noise(cloud, {.along_normal = true}));
   EXPECT_EQ(add_gaussian_noise({}).size(), 0u);
   EXPECT_EQ(subsample({}).size(), 0u);
+  EXPECT_EQ(thin({}, {.spacing = 1.0}).size(), 0u);
+  for (const double spacing : {0.0, -1.0, double(NAN), double(INFINITY)}) {
+    EXPECT_ERROR(ErrorKind::kUsage, thin(cloud, {.spacing = spacing}));
+  }
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ struct ConvertRequest {
   std::string input;
   std::string output;
   bool ascii = false;
-  double noise = 0.0, fraction = 1.0;
+  double noise = 0.0, spacing = 0.0, fraction = 1.0;
   bool along_normal = false;
   std::uint64_t seed = 1;
   std::size_t samples = 0;
@@ -35,7 +35,8 @@ struct ConvertRequest {
 
 /// Whether the points of the output are not those of the input.
 bool changes_points(const ConvertRequest& request) {
-  return request.samples > 0 || request.noise > 0.0 || request.fraction < 1.0;
+  return request.samples > 0 || request.noise > 0.0 || request.spacing > 0.0 ||
+         request.fraction < 1.0;
 }
 
 /// The most points to sample: as many as an index of 32 bits can number.
@@ -60,13 +61,18 @@ void sample(const ConvertRequest& request, const Progress& progress, PointCloud&
                               {request.samples, request.vertex_normals, request.seed}, &progress);
 }
 
-void perturb(const ConvertRequest& request, PointCloud& cloud) {
+void perturb(const ConvertRequest& request, const Progress& progress, PointCloud& cloud) {
   // Estimates are of the points before.
   if (changes_points(request)) detect::set_estimated_normals(cloud, false);
   if (request.noise > 0.0) {
     with_name_in_errors(request.input, [&] {
       cloud = shapes::add_gaussian_noise(std::move(cloud),
                                          {request.noise, request.along_normal, request.seed});
+    });
+  }
+  if (request.spacing > 0.0) {
+    with_name_in_errors(request.input, [&] {
+      cloud = shapes::thin(cloud, {request.spacing, request.seed}, &progress);
     });
   }
   if (request.fraction < 1.0) cloud = shapes::subsample(cloud, {request.fraction, request.seed});
@@ -137,7 +143,7 @@ void convert(const ConvertRequest& request, const Common& common) {
   if (request.samples > 0) {
     with_name_in_errors(request.input, [&] { sample(request, progress, loaded.cloud); });
   }
-  perturb(request, loaded.cloud);
+  perturb(request, progress, loaded.cloud);
   throw_if_cancelled(&progress);
   warn_of_losses(request.output, formats::losses(request.output, loaded.cloud));
   formats::write_cloud(
@@ -154,6 +160,7 @@ void add_convert(CLI::App& app, Common& common) {
                                   "pcednet convert scan.ply -o scan.pcd\n"
                                   "pcednet convert scan.laz -o scan.copc.laz\n"
                                   "pcednet convert scan.ply -o readable.ply --ascii\n"
+                                  "pcednet convert scan.ptx -o even.ply --spacing 0.005\n"
                                   "pcednet convert part.stl -o part.ply --sample 100000\n"
                                   "pcednet convert scan.ply -o worse.ply --noise 0.004 --seed 7");
   auto request = std::make_shared<ConvertRequest>();
@@ -173,6 +180,11 @@ void add_convert(CLI::App& app, Common& common) {
       ->add_flag("--noise-along-normal", request->along_normal,
                  "Add the noise along the normals only")
       ->needs(noise);
+  CLI::Option* spacing =
+      command
+          ->add_option("--spacing", request->spacing,
+                       "Thin to points that are at least this far apart, in the unit of the file")
+          ->check(number("a number above 0", [](double v) { return v > 0.0; }));
   CLI::Option* subsample = command
                                ->add_option("--subsample", request->fraction,
                                             "Keep this share of the points, chosen at random")
@@ -191,8 +203,8 @@ void add_convert(CLI::App& app, Common& common) {
       command->add_option("--seed", request->seed, "Seed of the noise and of the choice of points")
           ->capture_default_str();
   command->callback([=, &common] {
-    if (*seed && !*noise && !*subsample && !*samples) {
-      throw Error(ErrorKind::kUsage, "--seed requires --noise, --subsample or --sample");
+    if (*seed && !*noise && !*spacing && !*subsample && !*samples) {
+      throw Error(ErrorKind::kUsage, "--seed requires --noise, --spacing, --subsample or --sample");
     }
     convert(*request, common);
   });

@@ -12,6 +12,7 @@
 #include "pcednet/io/pcd_header.h"
 #include "pcednet/io/ply.h"
 #include "pcednet/io/ply_header.h"
+#include "pcednet/io/ptx.h"
 #include "pcednet/io/stl.h"
 #include "pcednet/io/text_scan.h"
 #include "pcednet/io/xyz.h"
@@ -61,6 +62,7 @@ std::vector<Format> make_formats() {
        .begins = io::begins_as_e57,
        .read = io::read_e57,
        .open_parts = [](auto file, std::size_t) { return io::open_e57_parts(std::move(file)); }},
+      {.name = "PTX", .extensions = {".ptx"}, .read = io::read_ptx},
       {.name = "OBJ",
        .extensions = {".obj"},
        .read = io::read_obj,

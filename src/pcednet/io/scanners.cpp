@@ -1,10 +1,20 @@
 #include "pcednet/io/scanners.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {
+
+void add_scanner(const Vec3& position, PointCloud& cloud) {
+  if (position.allFinite()) {
+    cloud.comments.push_back(fmt::format("scanner {}: {} {} {}", cloud.scanners.size(),
+                                         position.x(), position.y(), position.z()));
+  }
+  cloud.scanners.push_back(position);
+}
 
 std::vector<Vec3> scanners_of_comments(const std::vector<std::string>& comments) {
   constexpr std::size_t kMostScanners = 1 << 16;

@@ -3,12 +3,16 @@
 #include <string>
 #include <vector>
 
+#include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/vec3.h"
 
 namespace pcednet::io {
 
-/// The positions in comments of the form "scanner INDEX: X Y Z", where read_e57() keeps them so
-/// that they survive in other formats. Unnamed ones are NaN.
+/// Appends the position of the next scan's scanner, NaN if unknown, and a comment of the form
+/// "scanner INDEX: X Y Z" if known, so that it survives in other formats.
+void add_scanner(const Vec3& position, PointCloud& cloud);
+
+/// The positions in such comments. Unnamed ones are NaN.
 std::vector<Vec3> scanners_of_comments(const std::vector<std::string>& comments);
 
 }  // namespace pcednet::io

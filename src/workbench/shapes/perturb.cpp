@@ -14,6 +14,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/random.h"
 #include "pcednet/io/las/file.h"
+#include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::shapes {
 namespace {
@@ -61,6 +62,39 @@ Attribute chosen(const Attribute& all, std::span<const std::uint32_t> points) {
   return kept;
 }
 
+/// These points with all their fields.
+PointCloud chosen(const PointCloud& cloud, std::span<const std::uint32_t> points) {
+  PointCloud kept;
+  kept.scanners = cloud.scanners;
+  kept.positions = chosen(cloud.positions, points);
+  kept.normals = chosen(cloud.normals, points);
+  for (const Attribute& axis : cloud.stored_normals) {
+    kept.stored_normals.push_back(chosen(axis, points));
+  }
+  kept.colours = chosen(cloud.colours, points);
+  kept.labels = chosen(cloud.labels, points);
+  for (const Attribute& attribute : cloud.attributes) {
+    kept.attributes.push_back(chosen(attribute, points));
+  }
+  std::copy_if(cloud.foreign_elements.begin(), cloud.foreign_elements.end(),
+               std::back_inserter(kept.foreign_elements), io::is_las_element);
+  kept.position_type = cloud.position_type;
+  kept.comments = cloud.comments;
+  return kept;
+}
+
+/// All points in random order; those at one place keep theirs.
+std::vector<std::uint32_t> by_lot(const PointCloud& cloud, std::uint64_t seed) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> lots(cloud.size());
+  for (std::uint32_t i = 0; i < lots.size(); ++i) {
+    lots[i] = {random_at(cloud.positions[i], seed, kChoice).next(), i};
+  }
+  std::sort(lots.begin(), lots.end());
+  std::vector<std::uint32_t> points(lots.size());
+  std::transform(lots.begin(), lots.end(), points.begin(), [](auto lot) { return lot.second; });
+  return points;
+}
+
 }  // namespace
 
 PointCloud add_gaussian_noise(PointCloud cloud, const NoiseOptions& options) {
@@ -93,35 +127,38 @@ PointCloud subsample(const PointCloud& cloud, const SubsampleOptions& options) {
     throw Error(ErrorKind::kUsage,
                 fmt::format("a fraction of {} of the points: expected 0 ... 1", options.fraction));
   }
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> lots(cloud.size());
-  for (std::uint32_t i = 0; i < lots.size(); ++i) {
-    lots[i] = {random_at(cloud.positions[i], options.seed, kChoice).next(), i};
-  }
-  std::sort(lots.begin(), lots.end());
-  lots.resize(
+  std::vector<std::uint32_t> points = by_lot(cloud, options.seed);
+  points.resize(
       static_cast<std::size_t>(std::llround(options.fraction * static_cast<double>(cloud.size()))));
-  std::vector<std::uint32_t> points(lots.size());
-  std::transform(lots.begin(), lots.end(), points.begin(), [](auto lot) { return lot.second; });
   std::sort(points.begin(), points.end());
-
-  PointCloud kept;
-  kept.scanners = cloud.scanners;
-  kept.positions = chosen(cloud.positions, points);
-  kept.normals = chosen(cloud.normals, points);
-  for (const Attribute& axis : cloud.stored_normals) {
-    kept.stored_normals.push_back(chosen(axis, points));
-  }
-  kept.colours = chosen(cloud.colours, points);
-  kept.labels = chosen(cloud.labels, points);
-  for (const Attribute& attribute : cloud.attributes) {
-    kept.attributes.push_back(chosen(attribute, points));
-  }
-  std::copy_if(cloud.foreign_elements.begin(), cloud.foreign_elements.end(),
-               std::back_inserter(kept.foreign_elements), io::is_las_element);
-  kept.position_type = cloud.position_type;
-  kept.comments = cloud.comments;
+  PointCloud kept = chosen(cloud, points);
   kept.comments.push_back(
       fmt::format("subsample: {} of the points, seed {}", options.fraction, options.seed));
+  return kept;
+}
+
+PointCloud thin(const PointCloud& cloud, const ThinOptions& options, const Progress* progress) {
+  if (!(options.spacing > 0.0) || !std::isfinite(options.spacing)) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("a spacing of {}: expected more than 0", options.spacing));
+  }
+  check_extent(cloud.positions);
+  const spatial::KdTree tree(cloud.positions);
+  std::vector<std::uint32_t> points;
+  std::vector<std::uint8_t> dropped(cloud.size(), 0);
+  std::vector<spatial::Neighbour> near;
+  Stage stage(progress, "thin", cloud.size());
+  for (const std::uint32_t point : by_lot(cloud, options.seed)) {
+    stage.advance(1);
+    if (dropped[point] || !cloud.positions[point].allFinite()) continue;
+    points.push_back(point);
+    tree.within_unsorted(cloud.positions[point], options.spacing, near);
+    for (const spatial::Neighbour& other : near) dropped[other.index] = 1;
+  }
+  std::sort(points.begin(), points.end());
+  PointCloud kept = chosen(cloud, points);
+  kept.comments.push_back(
+      fmt::format("thinned: points at least {} apart, seed {}", options.spacing, options.seed));
   return kept;
 }
 

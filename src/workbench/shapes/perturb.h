@@ -3,11 +3,12 @@
 #include <cstdint>
 
 #include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/progress.h"
 
 namespace pcednet::shapes {
 
-// Noise and subsampling of a cloud. The change of a point depends on the seed and its position, not
-// on the numbering; points at exactly the same position change in the same way.
+// Noise, subsampling and thinning of a cloud. The change of a point depends on the seed and its
+// position, not on the numbering; points at exactly the same position change in the same way.
 
 struct NoiseOptions {
   double sigma = 0.004;       ///< standard deviation / diagonal of the bounding box, not negative
@@ -33,5 +34,17 @@ struct SubsampleOptions {
 /// With the same seed a smaller fraction keeps a subset of the points of a larger one. Throws
 /// Error(kUsage) for a fraction outside [0, 1].
 PointCloud subsample(const PointCloud& cloud, const SubsampleOptions& options = {});
+
+struct ThinOptions {
+  double spacing = 0.0;  ///< in the unit of the cloud, positive
+  std::uint64_t seed = 1;
+};
+
+/// Points of `cloud`, tried in random order, that are `spacing` or more apart, so that each point
+/// left out is nearer to one of them; in their order, with what subsample() keeps. Points that are
+/// not finite are left out. Throws Error(kUsage) for a spacing that is not positive or not finite,
+/// Error(kCancelled) when `progress` asks to cancel.
+PointCloud thin(const PointCloud& cloud, const ThinOptions& options,
+                const Progress* progress = nullptr);
 
 }  // namespace pcednet::shapes

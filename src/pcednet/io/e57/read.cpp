@@ -9,6 +9,7 @@
 #include "pcednet/io/e57/e57.h"
 #include "pcednet/io/e57/points.h"
 #include "pcednet/io/e57/scans.h"
+#include "pcednet/io/scanners.h"
 
 namespace pcednet::io {
 namespace {
@@ -21,11 +22,7 @@ void describe_scans(const E57Document& document, PointCloud& cloud) {
     const E57Scan& scan = document.scans[s];
     const std::string by = scan.sensor.empty() ? "" : ", " + scan.sensor;
     cloud.comments.push_back(fmt::format("scan {}: {}{}", s, scan.name, by));
-    cloud.scanners.push_back(scan.knows_scanner() ? scan.translation : Vec3::Constant(NAN));
-    const Vec3& at = cloud.scanners.back();
-    if (scan.knows_scanner()) {
-      cloud.comments.push_back(fmt::format("scanner {}: {} {} {}", s, at.x(), at.y(), at.z()));
-    }
+    add_scanner(scan.knows_scanner() ? scan.translation : Vec3::Constant(NAN), cloud);
   }
 }
 
