@@ -250,8 +250,9 @@ std::vector<Curve> find_curves(const LinesArguments& arguments, const LabelledCl
                                const Progress& progress, lines::LineScale& scale) {
   std::vector<Curve> curves;
   std::vector<Vec3> scanners;
-  if (arguments.lines.boundaries && !labelled.prepared.is_averaged()) {
-    scanners = scanner_of_points(labelled.cloud);
+  if (arguments.lines.boundaries) {
+    scanners = labelled.prepared.is_averaged() ? labelled.prepared.scanners
+                                               : scanner_of_points(labelled.cloud);
   }
   with_name_in_errors(arguments.input, [&] {
     curves = lines::find_lines({.positions = labelled.prepared.positions,

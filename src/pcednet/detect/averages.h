@@ -11,7 +11,8 @@ namespace pcednet::detect {
 // In noise thicker than the spacing no scale near the spacing shows an edge. Where a cloud has no
 // normals and PrepareOptions::average_noise is set, prepare() puts averages in place of such
 // points, which are fewer: classify() and find_boundary() are about these, and each point of the
-// cloud has what was found of its average.
+// cloud has what was found of its average. In the same way points stand for those that crowd around
+// them at the poles of a scanner whose place is known.
 
 /// In PreparedCloud::average_of: the point has no finite position.
 inline constexpr std::uint32_t kNoAverage = std::numeric_limits<std::uint32_t>::max();

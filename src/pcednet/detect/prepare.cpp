@@ -16,6 +16,7 @@
 #include "pcednet/detect/near_on_curve.h"
 #include "pcednet/detect/normal_fit.h"
 #include "pcednet/detect/rounding.h"
+#include "pcednet/detect/scanner_poles.h"
 #include "pcednet/detect/thinned_cloud.h"
 #include "pcednet/normals/flat_pairs.h"
 #include "pcednet/normals/neighbour_count.h"
@@ -197,6 +198,25 @@ bool average_noise(PreparedCloud& prepared, const Progress* progress) {
   return true;
 }
 
+/// Leaves out the crowds at the poles of scanners, see scanner_poles.h; false if there are none.
+bool leave_out_poles(PreparedCloud& prepared, const Points& cloud, const Progress* progress) {
+  const std::vector<Vec3> scanners = cloud.scanners();
+  if (scanners.empty()) return false;
+  auto thinned = without_poles(prepared.positions, scanners, prepared.curve, progress);
+  if (!thinned) return false;
+  prepared.notes.push_back(note_on(*thinned));
+  std::vector<Vec3> kept;
+  for (const std::uint32_t point : thinned->kept) {
+    kept.push_back(prepared.positions[point]);
+    prepared.scanners.push_back(scanners[point]);
+  }
+  prepared.moved = std::move(kept);
+  prepared.average_of = std::move(thinned->average_of);
+  prepared.positions = prepared.moved;
+  prepared.curve = spatial::curve_order(prepared.positions);
+  return true;
+}
+
 /// Spreads rounded positions.
 void spread_positions(const Rounding& rounding, PreparedCloud& prepared) {
   if (rounding.step == 0.0) return;
@@ -323,8 +343,10 @@ PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
     return prepared;
   }
   Points used = cloud;
-  if (options.average_noise && !cloud.has_normals() && average_noise(prepared, progress)) {
-    used = {prepared.positions, {}, [] { return std::vector<Vec3>(); }};
+  const bool may_average = options.average_noise && !cloud.has_normals();
+  if (may_average &&
+      (average_noise(prepared, progress) || leave_out_poles(prepared, cloud, progress))) {
+    used = {prepared.positions, {}, [&prepared] { return prepared.scanners; }};
   }
   estimate_missing(prepared, used, progress);
   if (prepared.made.empty()) note_misfits(prepared);

@@ -52,12 +52,13 @@ struct PartOfCloud;
 /// vectors: it can be moved, not copied. prepare() makes it; what uses it throws Error(kUsage) if
 /// the spans differ in length.
 struct PreparedCloud {
-  std::span<const Vec3> positions;   ///< the cloud's own, or `moved`; fewer in thick noise
+  std::span<const Vec3> positions;   ///< the cloud's own, or `moved`; fewer if averaged
   std::span<const Vec3> normals;     ///< the cloud's own, or `made`; unit or (0,0,0)
   std::vector<std::uint32_t> curve;  ///< the positions' order along a space-filling curve
   std::vector<Vec3> moved;           ///< empty unless positions are rounded, far out or averaged
   std::vector<Vec3> made;            ///< empty when the cloud's normals are used as they are
   std::vector<std::uint32_t> average_of;  ///< of each point of the cloud, see averages.h; or empty
+  std::vector<Vec3> scanners;             ///< of the positions, if crowds at poles are left out
   std::vector<std::string> notes;         ///< for the user, one sentence each
   bool reoriented = false;                ///< the signs of the cloud's normals were mixed
   bool misfits = false;                   ///< they are used, but are not those of its points
