@@ -85,6 +85,11 @@ void add_drawing_options(CLI::App& command, LinesArguments& arguments) {
   of_formats(add_choice(command, "--dxf-version", arguments.drawing.dxf_version, io::kDxfVersions,
                         "DXF: of AutoCAD 2000, which all later ones read, or R12 for old programs"),
              {".dxf"});
+  of_formats(add_choice(command, "--dxf-arcs", arguments.drawing.dxf_arcs, io::kDxfArcs,
+                        "DXF: all arcs and circles as such, or the flat ones (in horizontal "
+                        "planes), or none; the others as polylines, for programs that misplace "
+                        "arcs in tilted planes: FreeCAD and LibreCAD (flat), CloudCompare (none)"),
+             {".dxf"});
   of_formats(add_choice(command, "--view", arguments.drawing.view, io::kViews,
                         "SVG: seen from above, from the front (x, z) or from the side (y, z)"),
              {".svg"});

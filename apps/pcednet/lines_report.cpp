@@ -11,6 +11,7 @@
 
 #include "common.h"
 #include "pcednet/io/drawing/line_classes.h"
+#include "pcednet/io/text_scan.h"
 
 namespace pcednet::app {
 namespace {
@@ -138,6 +139,19 @@ void report_lines(const LinesArguments& arguments, const lines::LineScale& scale
       fmt::format("  spacing {:.3g}, noise {:.2g} of it: min-length {:.3g}, gap {:.3g}, "
                   "tolerance {:.3g}",
                   scale.spacing, scale.noise, scale.min_length, scale.gap, scale.tolerance));
+}
+
+void report_outputs(const LinesArguments& arguments, const std::vector<Curve>& curves) {
+  const std::size_t tilted = io::count_tilted(curves, arguments.drawing);
+  for (const std::string& output : arguments.outputs) {
+    const bool misplaces = io::extension_of(output) == ".dxf" && tilted > 0 &&
+                           arguments.drawing.dxf_arcs == io::DxfArcs::kAll;
+    say(fmt::format("  -> {}{}", output,
+                    misplaces ? fmt::format(" (arcs and circles in tilted planes: {}; FreeCAD, "
+                                            "LibreCAD and CloudCompare misplace them: --dxf-arcs)",
+                                            tilted)
+                              : ""));
+  }
 }
 
 }  // namespace pcednet::app

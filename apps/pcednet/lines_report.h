@@ -28,4 +28,7 @@ void report_lines(const LinesArguments& arguments, const lines::LineScale& scale
                   const std::vector<lines::Curve>& curves, const std::string& left_out,
                   std::span<const std::uint8_t> classes);
 
+/// Says what was written, and of DXF whether programs may misplace arcs.
+void report_outputs(const LinesArguments& arguments, const std::vector<lines::Curve>& curves);
+
 }  // namespace pcednet::app

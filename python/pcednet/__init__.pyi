@@ -96,6 +96,7 @@ class Lines(list[Curve]):
     def write(self, path: _Path, *, epsg: int | None = None,
               unit: Literal["none", "mm", "cm", "m", "in", "ft", "us-ft"] | None = None,
               tolerance: float = 0.0, dxf_version: Literal["2000", "r12"] = "2000",
+              dxf_arcs: Literal["all", "flat", "none"] = "all",
               view: Literal["top", "front", "side"] = "top", overwrite: bool = False) -> None: ...
 
 class Result:

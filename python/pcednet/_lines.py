@@ -38,8 +38,8 @@ class Lines(list):
         """The length of all curves together."""
         return sum(curve.length for curve in self)
 
-    def write(self, path, *, epsg=None, unit=None, tolerance=0.0, dxf_version="2000", view="top",
-              overwrite=False):
+    def write(self, path, *, epsg=None, unit=None, tolerance=0.0, dxf_version="2000",
+              dxf_arcs="all", view="top", overwrite=False):
         """Write the curves in the format of the extension: .dxf, .gpkg, .geojson, .obj, .ply or .svg.
 
         Parameters
@@ -54,6 +54,9 @@ class Lines(list):
             How far the polylines that stand for arcs may be from them, in formats without arcs;
             0: a thousandth of the radius, or the tolerance of the fit if that is less.
         dxf_version : {'2000', 'r12'}
+        dxf_arcs : {'all', 'flat', 'none'}
+            The arcs and circles of DXF that are such: all, those in horizontal planes, or none; the others
+            are polylines, for programs that misplace arcs in tilted planes, as FreeCAD.
         view : {'top', 'front', 'side'}
             SVG: where it is seen from.
         overwrite : bool
@@ -72,7 +75,8 @@ class Lines(list):
         settings = {"epsg": None if epsg is None else _arrays.whole(epsg, "epsg", *_core.EPSG_CODES),
                     "unit": None if unit is None else _arrays.text(unit, "unit"),
                     "tolerance": float(tolerance), "fit_tolerance": self._fit_tolerance,
-                    "dxf_version": str(dxf_version), "view": _arrays.text(view, "view"), "overwrite": bool(overwrite)}
+                    "dxf_version": str(dxf_version), "dxf_arcs": _arrays.text(dxf_arcs, "dxf_arcs"),
+                    "view": _arrays.text(view, "view"), "overwrite": bool(overwrite)}
         _core.write_lines(os.fspath(path), list(self), settings, self._kept)
 
     def __repr__(self):

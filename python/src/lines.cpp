@@ -88,6 +88,7 @@ io::DrawingOptions drawing_of(const py::dict& settings, const Kept* kept) {
   options.fit_tolerance = settings["fit_tolerance"].cast<double>();
   options.dxf_version =
       named(io::kDxfVersions, "dxf_version", settings["dxf_version"].cast<std::string>());
+  options.dxf_arcs = named(io::kDxfArcs, "dxf_arcs", settings["dxf_arcs"].cast<std::string>());
   options.view = named(io::kViews, "view", settings["view"].cast<std::string>());
   if (kept) options.coordinate_system = io::las_coordinate_system(*kept->cloud);
   if (!settings["epsg"].is_none()) {

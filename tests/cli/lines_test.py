@@ -160,16 +160,34 @@ class Lines(CliTest):
         self.assertEqual([found[name] for name in ("length", "gap", "tolerance")], [0.5, 0.25, 0.125])
         self.assertEqual(found["spacing"], spacing)
 
-    def test_round_curves_of_formats_without_arcs_keep_to_the_tolerance_of_their_points(self):
-        # The rim of a tank of 400 spacings' radius: the top, the wall, and the edge between.
+    def write_tank(self, turned=np.eye(3)):
+        """The rim of a tank of 400 spacings' radius: the top, the wall, and the edge between."""
         random = np.random.default_rng(5)
         turn, away = random.uniform(0, 2 * np.pi, 40000), random.uniform(0, 0.04, 40000)
         top = np.arange(40000) % 2 == 0
         r, z = np.where(top, 1 - away, 1), np.where(top, 0, -away)
         p = np.column_stack([r * np.cos(turn), r * np.sin(turn), z])
         n = np.where(top[:, None], [0, 0, 1.0], np.column_stack([np.cos(turn), np.sin(turn), 0 * z]))
-        write_ply(self.folder / "tank.ply", p, n, np.where(away < 0.003, 2, 0).astype(np.uint8))
-        said = run("lines", self.folder / "tank.ply", *self.outputs("geojson")).stderr
+        write_ply(self.folder / "tank.ply", p @ turned.T, n @ turned.T, np.where(away < 0.003, 2, 0).astype(np.uint8))
+        return self.folder / "tank.ply"
+
+    def test_tells_of_tilted_circles_in_dxf_and_makes_them_polylines(self):
+        path = self.write_tank(np.array([[1, 0, 0], [0, 0.6, -0.8], [0, 0.8, 0.6]]))
+        kinds = lambda: re.findall(r"^  0\n(ARC|CIRCLE|POLYLINE)$", self.made["dxf"].read_text(), re.M)
+        self.assertIn("in tilted planes: 1;", run("lines", path, *self.outputs("dxf")).stderr)
+        self.assertEqual(kinds(), ["CIRCLE"])
+        done = run("lines", path, *self.outputs("dxf"), "--dxf-arcs", "flat", "--overwrite")
+        self.assertNotIn("tilted", done.stderr)
+        self.assertEqual(kinds(), ["POLYLINE"])
+        path = self.write_tank()
+        done = run("lines", path, *self.outputs("dxf"), "--overwrite")
+        self.assertNotIn("tilted", done.stderr)
+        self.assertEqual(kinds(), ["CIRCLE"])
+        run("lines", path, *self.outputs("dxf"), "--dxf-arcs", "none", "--overwrite")
+        self.assertEqual(kinds(), ["POLYLINE"])
+
+    def test_round_curves_of_formats_without_arcs_keep_to_the_tolerance_of_their_points(self):
+        said = run("lines", self.write_tank(), *self.outputs("geojson")).stderr
         tolerance = float(re.search(r", tolerance (\S+)", said)[1])
         self.assertLess(tolerance, 0.0008)
         (properties, points), = geojson(self.made["geojson"])

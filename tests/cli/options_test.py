@@ -105,6 +105,7 @@ class Options(CliTest):
                 ("--exact excludes --eps", "describe", self.cloud, "-o", self.folder / "x.npy", "--exact", "--eps", 0.2),
                 ("--view is for .svg", *lines, self.folder / "x.dxf", "--view", "front"),
                 ("--unit is for .dxf .svg files", *lines, self.folder / "x.obj", "--unit", "mm"),
+                ("--dxf-arcs is for .dxf", *lines, self.folder / "x.obj", "--dxf-arcs", "flat"),
                 ("--dxf-version is for .dxf", *lines, self.folder / "x.obj", "--dxf-version", "r12")):
             self.refused(*arguments, saying=saying)
 

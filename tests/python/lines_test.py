@@ -174,10 +174,10 @@ class Lines(CliTest):
         found = pcednet.lines(self.positions, self.result)
         found.write(self.path("a.gpkg"), epsg=25832)
         self.assertIn(b"25832", self.path("a.gpkg").read_bytes())
-        found.write(self.path("a.dxf"), unit="mm", dxf_version="r12")
+        found.write(self.path("a.dxf"), unit="mm", dxf_version="r12", dxf_arcs="none")
         with self.assertRaises(FileExistsError):
             found.write(self.path("a.dxf"))
-        for wrong in ({"unit": "mile"}, {"view": "below"}, {"dxf_version": "9"}):
+        for wrong in ({"unit": "mile"}, {"view": "below"}, {"dxf_version": "9"}, {"dxf_arcs": "some"}):
             with self.assertRaisesRegex(pcednet.UsageError, "there are"):
                 found.write(self.path("b.dxf"), **wrong)
         with self.assertRaises(pcednet.UsageError):

@@ -350,7 +350,7 @@ void run(LinesArguments arguments, const Common& common) {
   }
   report_lines(arguments, scale, curves, left_out, labelled.classes);
   say("  seconds: " + clock.seconds());
-  for (const std::string& output : arguments.outputs) say("  -> " + output);
+  report_outputs(arguments, curves);
   if (!arguments.preview.path.empty()) say("  -> " + arguments.preview.path);
 }
 

@@ -132,6 +132,53 @@ TEST(Dxf, ArcsAndCirclesOfAnyPlaneAreWhereTheyWere) {
   }
 }
 
+/// The vertices of the POLYLINE that is object `at`.
+std::vector<Vec3> vertices_after(const std::vector<DxfObject>& objects, std::size_t at) {
+  std::vector<Vec3> points;
+  while (objects[++at].type == "VERTEX") points.push_back(objects[at].point(10));
+  return points;
+}
+
+TEST(Dxf, TiltedArcsBecomePolylinesForProgramsThatTakeAllForFlat) {
+  const Scratch scratch;
+  const Vec3 centre(500123.25, 5400987.5, 252.125);
+  const std::vector<Curve> curves = {
+      make_circle(centre, Vec3(1e-5, 0, -1), 2.0),
+      make_arc(centre, Vec3(0, 1e-5, -1), 2.0, 0.5, 1.5),
+      make_arc(centre, Vec3(1, 2, 3), 2.0, 0.5, 1.5, kSmoothEdge),
+      make_circle(centre, Vec3(0.01, 0, 1), 2.0),
+  };
+  for (const DxfVersion version : {DxfVersion::kR12, DxfVersion::k2000}) {
+    DrawingOptions options{.tolerance = 1e-3, .dxf_version = version, .dxf_arcs = DxfArcs::kFlat};
+    EXPECT_EQ(count_tilted(curves, options), 2u);
+    const auto flat = entities(written(scratch, curves, options));
+    EXPECT_EQ(flat[0].type, "CIRCLE");
+    EXPECT_EQ(flat[1].type, "ARC");
+    for (const std::size_t i : {0, 1}) {
+      EXPECT_EQ(flat[i].point(10), centre);  // in the axes of the world, too
+      EXPECT_EQ(flat[i].point(210), Vec3::UnitZ());
+    }
+    EXPECT_LT((place_on(flat[1], flat[1].number(50)) - curves[1].points[1]).norm(), 1e-4);
+    EXPECT_LT((place_on(flat[1], flat[1].number(51)) - curves[1].points[0]).norm(), 1e-4);
+    ASSERT_EQ(flat[2].type, "POLYLINE");
+    EXPECT_EQ(flat[2].text(8), "smooth-edge");
+    EXPECT_EQ(flat[2].text(70), "8");
+    const auto arc = vertices_after(flat, 2);
+    EXPECT_EQ(arc.front(), curves[2].points.front());
+    EXPECT_EQ(arc.back(), curves[2].points.back());
+    for (const Vec3& point : arc) EXPECT_NEAR((point - centre).norm(), 2.0, 1e-6);
+    const std::size_t last = 2 + arc.size() + 2;
+    ASSERT_EQ(flat[last].type, "POLYLINE");
+    EXPECT_EQ(flat[last].text(70), "9");
+    const auto circle = vertices_after(flat, last);
+    EXPECT_NE(circle.front(), circle.back());
+    options.dxf_arcs = DxfArcs::kNone;
+    for (const DxfObject& object : entities(written(scratch, curves, options))) {
+      EXPECT_TRUE(object.type != "ARC" && object.type != "CIRCLE") << object.type;
+    }
+  }
+}
+
 TEST(Dxf, NormalsOfOppositeAxesAreAlikeAndPointUpwards) {
   const Scratch scratch;
   for (const Vec3& axis : kAxes) {

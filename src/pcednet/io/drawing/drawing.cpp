@@ -19,10 +19,6 @@ namespace {
 using lines::Curve;
 using lines::CurveKind;
 
-bool is_round(const Curve& curve) {
-  return curve.kind == CurveKind::kArc || curve.kind == CurveKind::kCircle;
-}
-
 /// Why a curve cannot be drawn; empty if it can.
 std::string fault_of(const Curve& curve) {
   const std::size_t least = curve.kind == CurveKind::kCircle ? 1 : 2;
@@ -104,11 +100,28 @@ std::vector<std::string> drawing_losses(const std::filesystem::path& path,
       "WGS 84; GeoPackage avoids that"};
 }
 
-std::vector<Vec3> drawn(const Curve& curve, const DrawingOptions& options) {
-  if (options.tolerance > 0.0) return sampled(curve, options.tolerance);
+double tolerance_of(const Curve& curve, const DrawingOptions& options) {
+  if (options.tolerance > 0.0) return options.tolerance;
   const double of_radius = curve.radius / 1000.0;
-  return sampled(
-      curve, options.fit_tolerance > 0.0 ? std::min(of_radius, options.fit_tolerance) : of_radius);
+  return options.fit_tolerance > 0.0 ? std::min(of_radius, options.fit_tolerance) : of_radius;
+}
+
+bool is_round(const Curve& curve) {
+  return curve.kind == CurveKind::kArc || curve.kind == CurveKind::kCircle;
+}
+
+bool is_tilted(const Curve& curve, const DrawingOptions& options) {
+  const double rise = curve.radius * curve.axis.head<2>().norm();
+  return is_round(curve) && rise > tolerance_of(curve, options);
+}
+
+std::size_t count_tilted(Curves curves, const DrawingOptions& options) {
+  return static_cast<std::size_t>(std::count_if(
+      curves.begin(), curves.end(), [&](const Curve& curve) { return is_tilted(curve, options); }));
+}
+
+std::vector<Vec3> drawn(const Curve& curve, const DrawingOptions& options) {
+  return sampled(curve, tolerance_of(curve, options));
 }
 
 LineMesh line_mesh(Curves curves, const DrawingOptions& options) {

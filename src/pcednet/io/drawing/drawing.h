@@ -17,12 +17,19 @@ namespace pcednet::io {
 
 enum class DxfVersion { kR12, k2000 };
 
+/// Which arcs and circles are such in DXF; the others are polylines. Flat ones are horizontal
+/// within the tolerance of polylines, and made exactly so: for programs that take the plane of any
+/// arc for horizontal (FreeCAD 0.20, LibreCAD 2.2, CloudCompare 2.11).
+enum class DxfArcs { kAll, kFlat, kNone };
+
 /// Where an SVG is seen from: above (x to the right, y up), the front (x, z) or the side (y, z).
 enum class View { kTop, kFront, kSide };
 
 /// Their names in options.
 inline constexpr std::array<std::pair<std::string_view, DxfVersion>, 2> kDxfVersions = {
     {{"2000", DxfVersion::k2000}, {"r12", DxfVersion::kR12}}};
+inline constexpr std::array<std::pair<std::string_view, DxfArcs>, 3> kDxfArcs = {
+    {{"all", DxfArcs::kAll}, {"flat", DxfArcs::kFlat}, {"none", DxfArcs::kNone}}};
 inline constexpr std::array<std::pair<std::string_view, View>, 3> kViews = {
     {{"top", View::kTop}, {"front", View::kFront}, {"side", View::kSide}}};
 
@@ -33,6 +40,7 @@ struct DrawingOptions {
   double tolerance = 0.0;
   double fit_tolerance = 0.0;  ///< how far points may be from the curves; 0: unknown
   DxfVersion dxf_version = DxfVersion::k2000;
+  DxfArcs dxf_arcs = DxfArcs::kAll;
   /// Of the coordinates. DXF: absent, that of the coordinate system; SVG: gives the size on a page.
   std::optional<LengthUnit> unit = std::nullopt;
   View view = View::kTop;
@@ -66,6 +74,9 @@ const DrawingFormat& drawing_format_for(const std::filesystem::path& path);
 /// the disk is full, or for an invalid curve: without points, or with numbers that are not finite.
 void write_drawing(const std::filesystem::path& path, std::span<const lines::Curve> curves,
                    const DrawingOptions& options = {});
+
+/// How many arcs and circles are not horizontal within the tolerance of polylines.
+std::size_t count_tilted(std::span<const lines::Curve> curves, const DrawingOptions& options);
 
 /// What readers of the file will not learn of the drawing, as phrases: GeoJSON without an EPSG code
 /// does not tell that its coordinates are no degrees. Throws Error(kUsage) as drawing_format_for().

@@ -86,9 +86,25 @@ void write_polyline(DxfText& dxf, const Curve& curve, std::string_view layer, st
   dxf.begin_drawn("SEQEND", own, layer);
 }
 
-void write_entities(DxfText& dxf, Curves curves, std::uint64_t owner) {
+/// The curve as the options have it: an arc or circle may become horizontal or a polyline.
+Curve with_chosen_arcs(Curve curve, const DrawingOptions& options) {
+  if (!is_round(curve) || options.dxf_arcs == DxfArcs::kAll) return curve;
+  if (options.dxf_arcs == DxfArcs::kFlat && !is_tilted(curve, options)) {
+    curve.axis = Vec3(0.0, 0.0, curve.axis.z() < 0.0 ? -1.0 : 1.0);
+    return curve;
+  }
+  curve.points = drawn(curve, options);
+  curve.closed = curve.points.front() == curve.points.back();
+  if (curve.closed) curve.points.pop_back();
+  curve.kind = CurveKind::kPolyline;
+  return curve;
+}
+
+void write_entities(DxfText& dxf, Curves curves, const DrawingOptions& options,
+                    std::uint64_t owner) {
   dxf.begin_section("ENTITIES");
-  for (const Curve& curve : curves) {
+  for (const Curve& given : curves) {
+    const Curve curve = with_chosen_arcs(given, options);
     const std::string_view layer = line_class(curve.edge_class).name;
     switch (curve.kind) {
       case CurveKind::kSegment:
@@ -143,7 +159,7 @@ void write_dxf(const std::filesystem::path& path, Curves curves, const DrawingOp
   }
   const DxfHandles handles = write_dxf_tables(body, box);
   if (body.has_handles()) write_dxf_blocks(body, handles);
-  write_entities(body, curves, handles.model_space);
+  write_entities(body, curves, options, handles.model_space);
   if (body.has_handles()) write_dxf_objects(body);
   body.text(0, "EOF");
   DxfText header(options.dxf_version);  // names the handle after the last

@@ -25,6 +25,10 @@ void write_svg(const std::filesystem::path& path, Curves curves, const DrawingOp
 /// Whether this build can write GeoPackage.
 bool has_geopackage();
 
+/// Whether a curve is an arc or a circle, and one that is not horizontal within its tolerance.
+bool is_round(const lines::Curve& curve);
+bool is_tilted(const lines::Curve& curve, const DrawingOptions& options);
+
 /// The vertices of a curve for a format without arcs.
 std::vector<Vec3> drawn(const lines::Curve& curve, const DrawingOptions& options);
 
