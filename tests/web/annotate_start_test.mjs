@@ -181,6 +181,31 @@ async function expectPainted(points) {
   assert.equal(await painted(), points);
 }
 
+test("asks before it is left while strokes are on their way to a slow program", async () => {
+  const held = [];
+  let slow = true;
+  await page.route("**/api/stroke*", (route) => (slow ? held.push(route) : route.continue()));
+  const before = await its.state("undo");
+  for (const edgeClass of [1, 2]) await its.stroke(edgeClass, [[0.2, 0.7, 0.6]], 0.1);
+  const left = page.reload().then(
+    () => assert.fail("left without a question"),
+    () => {}, // dismissed
+  );
+  const [question] = await Promise.race([once(page, "dialog"), left]);
+  assert.equal(question.type(), "beforeunload");
+  await question.dismiss();
+  slow = false;
+  for (const route of held) await route.continue();
+  await settled();
+  assert.equal(await its.state("undo"), before + 2);
+  await page.unrouteAll();
+  for (const undo of [before + 1, before]) {
+    await page.keyboard.press("Control+z");
+    await page.waitForFunction((steps) => annotator.store.now.undo === steps, undo);
+  }
+  await settled();
+});
+
 test("loses no stroke and goes on by itself when the program is killed and started again", async () => {
   await settled();
   const kept = await finallyPainted();

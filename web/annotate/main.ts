@@ -177,7 +177,7 @@ function open(page: HTMLElement): void {
   });
   store.watch(["orthographic"], () => stage.camera.setOrthographic(store.now.orthographic));
   addEventListener("pagehide", () => api.leave());
-  addEventListener("beforeunload", (event) => store.now.waiting > 0 && event.preventDefault());
+  addEventListener("beforeunload", (event) => client.isBusy && event.preventDefault());
   addEventListener("pageshow", ({ persisted }) => persisted && location.reload()); // it has left before
   client.start().catch((error: Error) => {
     store.set({ progress: { stage: `Cannot open the cloud: ${error.message}.`, fraction: 0 } });
