@@ -263,6 +263,24 @@ test("is printed with its colours, the whole command, and no buttons that do not
   await page.emulateMedia({ media: null });
 });
 
+test("has its clouds on paper, and nothing cut off at the right", async () => {
+  await frames(page);
+  const colours = await page.evaluate(async () => {
+    const image = await createImageBitmap(document.querySelector(".stage canvas")); // between two drawings
+    const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
+    context.drawImage(image, 0, 0);
+    return new Set(new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer)).size;
+  });
+  assert.ok(colours > 50, `${colours} colours`);
+  await page.emulateMedia({ media: "print" });
+  const overflows = await page.evaluate(() =>
+    [...document.querySelectorAll(".scroller, .stage, .plot")].map((one) => getComputedStyle(one).overflowX),
+  );
+  assert.ok(overflows.length > 5);
+  assert.deepEqual([...new Set(overflows)], ["visible"]);
+  await page.emulateMedia({ media: null });
+});
+
 test("draws the clouds in the colours of their classes", async () => {
   assert.ok((await page.locator(".label").count()) >= 3);
   for (const panel of [0, 1, 2]) {

@@ -84,7 +84,13 @@ export class PointViewer {
 
   /** Throws if the browser offers no WebGL. */
   constructor(private readonly canvas: HTMLCanvasElement) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "low-power" });
+    // The picture is kept: printing shows what is there, between two drawings.
+    this.renderer = new WebGLRenderer({
+      canvas,
+      antialias: true,
+      powerPreference: "low-power",
+      preserveDrawingBuffer: true,
+    });
     this.renderer.autoClear = false;
     this.renderer.setScissorTest(true);
     this.material = new ShaderMaterial({
