@@ -336,6 +336,22 @@ for (const [name, options] of [
       getComputedStyle(document.body).backgroundColor,
     ]);
     assert.ok(wide <= 0, `${wide} pixels too wide`);
+    // 4.5 to 1, as the guidelines for accessible pages ask for.
+    const contrasts = await other.evaluate(() => {
+      const light = (colour) => {
+        const linear = colour
+          .match(/[\d.]+/g)
+          .slice(0, 3)
+          .map((c) => (c > 10 ? ((c / 255 + 0.055) / 1.055) ** 2.4 : c / 255 / 12.92));
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2] + 0.05;
+      };
+      const paper = light(getComputedStyle(document.body).backgroundColor);
+      return [...document.querySelectorAll("td, .deviation, .beside, .note")].map((one) => {
+        const ink = light(getComputedStyle(one).color);
+        return Math.max(ink, paper) / Math.min(ink, paper);
+      });
+    });
+    assert.ok(contrasts.length > 20 && Math.min(...contrasts) >= 4.5, `${Math.min(...contrasts)}`);
     if (name === "the dark") assert.match(background, /rgb\((\d|[1-5]\d), /);
     assert.ok((await seen(other, 0)).pale > 0.004);
     await other.close();
