@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <map>
+#include <numbers>
 #include <optional>
 
 #include "batch.h"
@@ -74,6 +79,34 @@ std::vector<lines::Curve> read_found(const fs::path& path) {
   }
 }
 
+/// How many ends of segments go on nearly straight in exactly one other segment.
+std::size_t count_joints(const std::vector<lines::Curve>& curves) {
+  std::map<std::array<double, 3>, std::vector<Vec3>> directions;  // away from each end
+  for (const lines::Curve& curve : curves) {
+    if (curve.points.size() != 2) continue;
+    for (const std::size_t i : {0, 1}) {
+      const Vec3& end = curve.points[i];
+      directions[{end.x(), end.y(), end.z()}].push_back((curve.points[1 - i] - end).normalized());
+    }
+  }
+  const double straight = -std::cos(15.0 * std::numbers::pi / 180.0);
+  return static_cast<std::size_t>(
+      std::count_if(directions.begin(), directions.end(), [&](const auto& place) {
+        const auto& away = place.second;
+        return away.size() == 2 && away[0].dot(away[1]) < straight;
+      }));
+}
+
+/// Some programs write every piece of a polyline as a line of its own.
+void warn_of_cut_curves(const fs::path& path, const std::vector<lines::Curve>& curves) {
+  const std::size_t joints = count_joints(curves);
+  if (2 * joints < curves.size() || curves.empty()) return;
+  warn(
+      fmt::format("{}: its {} lines are pieces of curves, which go on straight at {} ends: each "
+                  "piece counts as a curve in `found`, `pieces` and `corners`",
+                  path.string(), curves.size(), joints));
+}
+
 eval::LineFrame frame_for(const LineEvaluation& arguments, const std::string& stem,
                           const std::vector<lines::Curve>& truth) {
   if (arguments.cloud.empty()) return eval::frame_of_curves(truth);
@@ -98,8 +131,10 @@ void evaluate_lines(const LineEvaluation& arguments, const Common& common) {
       warn(fmt::format("{}: no true curves in {}: left out", input.string(), arguments.truth));
       continue;
     }
+    warn_of_cut_curves(find_truth(arguments.truth, stem), *truth);
     with_name_in_errors(input, [&] {
       const auto found = read_found(input);
+      warn_of_cut_curves(input, found);
       scores.push_back(
           {stem, eval::score_lines(found, *truth, frame_for(arguments, stem, *truth))});
     });

@@ -111,6 +111,18 @@ class Evaluate(CliTest):
         path.write_text("".join(f"{x} {y} 0\n" for x in (-1, 1) for y in (-1, 1)))
         return path
 
+    def test_curves_in_pieces_are_told(self):
+        ring = "".join(f"v {np.cos(a):.6f} {np.sin(a):.6f} 0\n" for a in np.arange(48) * np.pi / 24)
+        whole, pieces, square = (self.folder / name for name in ("whole.obj", "pieces.obj", "square.obj"))
+        whole.write_text(ring + "l " + " ".join(str(k + 1) for k in range(48)) + " 1\n")
+        pieces.write_text(ring + "".join(f"l {k + 1} {(k + 1) % 48 + 1}\n" for k in range(0, 48)))
+        square.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nl 1 2\nl 2 3\nl 3 4\nl 4 1\n")
+        for lines, truth, told in ((pieces, whole, pieces), (whole, pieces, pieces)):
+            said = run("evaluate", lines, "--truth", truth).stderr
+            self.assertIn(f"{told}: its 48 lines are pieces of curves, which go on straight at 48 ends", said)
+        for lines in (whole, square):
+            self.assertNotIn("pieces of curves", run("evaluate", lines, "--truth", lines).stderr)
+
     def test_refuses_lines_without_truth(self):
         truth = self.folder / "truth.obj"
         truth.write_text("v 0 0 0\nv 1 0 0\nl 1 2\n")
