@@ -147,10 +147,11 @@ void report_outputs(const LinesArguments& arguments, const std::vector<Curve>& c
     const bool misplaces = io::extension_of(output) == ".dxf" && tilted > 0 &&
                            arguments.drawing.dxf_arcs == io::DxfArcs::kAll;
     say(fmt::format("  -> {}{}", output,
-                    misplaces ? fmt::format(" (arcs and circles in tilted planes: {}; FreeCAD, "
-                                            "LibreCAD and CloudCompare misplace them: --dxf-arcs)",
-                                            tilted)
-                              : ""));
+                    misplaces
+                        ? fmt::format(" (FreeCAD, LibreCAD and CloudCompare misplace arcs and "
+                                      "circles of tilted planes, here {}; --dxf-arcs avoids it)",
+                                      tilted)
+                        : ""));
   }
 }
 

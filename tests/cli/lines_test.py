@@ -174,7 +174,7 @@ class Lines(CliTest):
     def test_tells_of_tilted_circles_in_dxf_and_makes_them_polylines(self):
         path = self.write_tank(np.array([[1, 0, 0], [0, 0.6, -0.8], [0, 0.8, 0.6]]))
         kinds = lambda: re.findall(r"^  0\n(ARC|CIRCLE|POLYLINE)$", self.made["dxf"].read_text(), re.M)
-        self.assertIn("in tilted planes: 1;", run("lines", path, *self.outputs("dxf")).stderr)
+        self.assertIn("circles of tilted planes, here 1; --dxf-arcs", run("lines", path, *self.outputs("dxf")).stderr)
         self.assertEqual(kinds(), ["CIRCLE"])
         done = run("lines", path, *self.outputs("dxf"), "--dxf-arcs", "flat", "--overwrite")
         self.assertNotIn("tilted", done.stderr)

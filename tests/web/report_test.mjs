@@ -112,8 +112,13 @@ after(async () => {
 test("says what is wrong with a folder", () => {
   const other = fs.mkdtempSync(path.join(folder, "other-"));
   const to = path.join(other, "page.html");
+  assert.match(pcednet(path.join(other, "none"), "-o", to).words, /none: no such folder/);
   assert.equal(pcednet(path.join(other, "none"), "-o", to).code, 3);
-  assert.equal(pcednet(other, "-o", to).code, 4);
+  fs.writeFileSync(path.join(other, "cloud.ply"), "");
+  assert.match(pcednet(path.join(other, "cloud.ply"), "-o", to).words, /cloud\.ply: is no folder/);
+  const empty = pcednet(other, "-o", to);
+  assert.equal(empty.code, 4);
+  assert.match(empty.words, /no study in it; give the folder that `pcednet study methods --test/);
   fs.writeFileSync(path.join(other, "methods.json"), "{");
   const broken = pcednet(other, "-o", to);
   assert.equal(broken.code, 3);

@@ -27,7 +27,11 @@ constexpr std::string_view kPlace = "\"PCEDNET-REPORT-DATA\"";
 std::vector<fs::path> json_files(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
-    throw Error(ErrorKind::kUnreadable, fmt::format("{}: no such folder", folder.string()));
+    const bool is_file = fs::exists(folder, error);
+    throw Error(
+        ErrorKind::kUnreadable,
+        folder.string() + (is_file ? ": is no folder; give the one that `pcednet study` wrote"
+                                   : ": no such folder"));
   }
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
@@ -154,8 +158,9 @@ Studies read_studies(const fs::path& folder) {
   if (studies.texts.empty()) {
     if (broken) throw *broken;
     throw Error(ErrorKind::kInsufficient,
-                fmt::format("{}: no study in it; `pcednet study NAME -o {}` makes one",
-                            folder.string(), folder.string()));
+                fmt::format("{}: no study in it; give the folder that `pcednet study methods "
+                            "--test SET=CLOUDS -o FOLDER` writes",
+                            folder.string()));
   }
   return studies;
 }
