@@ -51,6 +51,31 @@ TEST(FindLines, RefusesWhatIsNoProbability) {
   }
 }
 
+TEST(FindLines, FollowsClassesThatWereCorrectedAgainstTheirProbabilities) {
+  const Cloud cloud = cube(8000);
+  std::vector<float> as_classes, painted;  // the edges above were painted
+  std::vector<std::uint8_t> erased = cloud.classes;
+  for (std::size_t i = 0; i < erased.size(); ++i) {
+    const bool is_upper = cloud.positions[i].z() > 0.7;
+    const float p = cloud.classes[i] == kSharpEdge ? 0.9f : 0.02f;
+    as_classes.push_back(p);
+    painted.push_back(is_upper ? 0.02f : p);
+    if (is_upper) erased[i] = kNonEdge;
+  }
+  EdgePoints points = points_of(cloud);
+  points.p_sharp = as_classes;
+  EXPECT_EQ(find_lines(points).size(), 12u);
+  points.p_sharp = painted;
+  const auto curves = find_lines(points);
+  EXPECT_EQ(curves.size(), 12u);
+  for (const Curve& curve : curves) EXPECT_GT(curve.confidence, 0.5);
+  points.p_sharp = as_classes;
+  points.classes = erased;
+  for (const Curve& curve : find_lines(points)) {
+    EXPECT_LT(0.5 * (curve.points.front() + curve.points.back()).z(), 0.7);
+  }
+}
+
 TEST(FindLines, RefusesACurveOfOtherPoints) {
   const Cloud cloud = cube(500);
   EdgePoints points = points_of(cloud);

@@ -46,6 +46,8 @@ struct EdgePoints {
   /// tell the sides of thin walls apart in noise.
   std::span<const Vec3> normals;
   std::span<const std::uint8_t> classes;  ///< EdgeClass
+  /// Where the class contradicts both together, as after a correction, it counts alone: a non-edge
+  /// beyond one half, an edge below a tenth.
   std::span<const float> p_sharp = {};
   std::span<const float> p_smooth = {};
   /// Not 0 where points around it are missing: no boundary is found there. May be empty.
