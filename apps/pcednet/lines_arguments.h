@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "las_codes.h"
 #include "models.h"
 #include "pcednet/detect/prepare.h"
 #include "pcednet/io/coordinate_system.h"
@@ -17,7 +18,8 @@ namespace pcednet::app {
 
 /// The arguments of `pcednet lines`.
 struct LinesArguments {
-  std::string input, memory;
+  std::string input, memory, las_classification;
+  LasCodes codes;  ///< of las_classification, by which labels are read
   PreviewArguments preview;
   std::vector<std::string> outputs, kinds;
   std::vector<std::string> classes = {"sharp", "boundary"};

@@ -229,6 +229,33 @@ class Lines(CliTest):
         done = run("lines", path, *self.outputs("gpkg"), "--crs", "EPSG:25833", "--overwrite")
         self.assertNotIn("another coordinate system", done.stderr)
 
+    def test_labels_from_the_codes_of_las(self):
+        """Edges that were corrected in a program for LAS: the codes change, other columns stay."""
+        p, n, label = cube(8000)
+        plain, coded = self.folder / "plain.csv", self.folder / "coded.csv"
+        rows = np.column_stack([np.round(p, 5), n, label])
+        np.savetxt(plain, rows, fmt=["%.5f"] * 6 + ["%d"], delimiter=",", header="x,y,z,nx,ny,nz,label", comments="")
+        rows = np.column_stack([rows[:, :6], 0 * label, np.choose(label, [6, 65, 64])])
+        np.savetxt(coded, rows, fmt=["%.5f"] * 6 + ["%d"] * 2, delimiter=",",
+                   header="x,y,z,nx,ny,nz,edge_class,Classification", comments="")
+        las_file = self.folder / "coded.las"
+        run("convert", coded, "-o", las_file)
+        run("lines", plain, "-o", self.folder / "plain.obj")
+        for cloud in (coded, las_file):
+            done = run("lines", cloud, *self.outputs("obj"), "--las-classification", "2=64,1=65,0=6", "--overwrite")
+            self.assertIn("labels from its field Classification", done.stderr)
+            self.assertEqual(self.stated_count(done), 12)
+            if cloud == coded:
+                self.assertEqual(self.made["obj"].read_bytes(), (self.folder / "plain.obj").read_bytes())
+        in_tiles = run("lines", las_file, *self.outputs("obj"), "--las-classification", "2=64,1=65,0=6", "--overwrite",
+                       "--max-memory", "90M")
+        self.assertEqual(self.stated_count(in_tiles), 12)
+        out = (*self.outputs("obj"), "--overwrite", "--las-classification")
+        self.assertIn("holds 6, 64", run("lines", las_file, *out, "2=7", expect=4).stderr)
+        self.assertIn("no field Classification", run("lines", plain, *out, "2=64", expect=4).stderr)
+        for bad in (["x"], ["2=64", "--classify"], ["2=64", "--model", "cad"]):
+            self.assertIn("--las-classification", run("lines", las_file, *out, *bad, expect=2).stderr)
+
     def test_crs_names_the_coordinate_system_of_a_file_that_does_not(self):
         path = self.labelled_cube()
         without = run("lines", path, *self.outputs("geojson")).stderr

@@ -11,12 +11,12 @@
 #include "classify_cloud.h"
 #include "commands.h"
 #include "lines_arguments.h"
+#include "lines_labels.h"
 #include "lines_report.h"
 #include "lines_tiles.h"
 #include "models.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/averages.h"
-#include "pcednet/formats/format.h"
 #include "pcednet/formats/labels.h"
 #include "pcednet/formats/virtual_cloud.h"
 #include "pcednet/io/drawing/drawing.h"
@@ -79,25 +79,6 @@ void check_outputs(const LinesArguments& arguments) {
   check_distinct(outputs);
 }
 
-/// The attribute scalar_`name` or `name` of every point; empty if there is none.
-std::vector<float> probabilities(const std::string& file, const PointCloud& cloud,
-                                 const std::string& name) {
-  for (const std::string& spelling : {"scalar_" + name, name}) {
-    const Attribute* attribute = find_attribute(cloud, spelling);
-    if (!attribute || attribute->components != 1) continue;
-    std::vector<float> values(cloud.size());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      values[i] = static_cast<float>(attribute->value(i));
-      if (values[i] >= 0.0f && values[i] <= 1.0f) continue;
-      throw Error(ErrorKind::kInsufficient,
-                  fmt::format("{}: {} of point {} is {}, which is not in [0, 1]", file, spelling, i,
-                              values[i]));
-    }
-    return values;
-  }
-  return {};
-}
-
 /// Throws for classes other than edge classes.
 void check_edges(const std::string& whose, const ClassTable& table) {
   if (has_edges(table)) return;
@@ -115,39 +96,12 @@ void add_given_labels(const LinesArguments& arguments, std::vector<std::uint8_t>
                       LabelledCloud& labelled, const Progress& progress) {
   tell_labels(arguments.input, classes);
   const PointCloud& cloud = labelled.cloud;
-  detect::Classification found;
-  found.classes = std::move(classes);
-  found.p_sharp = probabilities(arguments.input, cloud, "p_sharp");
-  found.p_smooth = probabilities(arguments.input, cloud, "p_smooth");
-  if (found.p_sharp.empty()) found.p_smooth.clear();
-  if (!found.p_sharp.empty()) found.p_smooth.resize(cloud.size());
+  detect::Classification found = with_probabilities(arguments, cloud, std::move(classes));
   detect::PrepareOptions preparation = arguments.preparation;
   preparation.average_noise = true;
   labelled.prepared = prepare(arguments.input, cloud, preparation, progress);
   labelled.given = true;
   take(of_averages(labelled.prepared, std::move(found)), labelled);
-}
-
-/// The labels of the file: its own, otherwise those in a column of edges, which it says.
-std::vector<std::uint8_t> labels_in(const std::string& file, const PointCloud& cloud) {
-  std::vector<std::uint8_t> labels = formats::labels_of(cloud, file);
-  if (cloud.has_labels() && labels != cloud.labels) {
-    warn(fmt::format("{}: its columns edge_class and label differ: edge_class is drawn", file));
-  }
-  if (!labels.empty()) return labels;
-  if (auto column = formats::edge_column_of(cloud)) {
-    say(fmt::format("{}: labels from its column {}", file, column->column));
-    return std::move(column->classes);
-  }
-  const std::string doubtful = formats::doubtful_column_of(cloud);
-  const formats::Format* format = formats::find_format(file);
-  if (!doubtful.empty() && !(format && format->is_las())) {
-    say(fmt::format(
-        "{}: its column {} is not taken for edge classes: in other programs 2 is ground; "
-        "call it label if they are",
-        file, doubtful));
-  }
-  return {};
 }
 
 /// Reads the whole cloud, and classifies it if needed.
@@ -158,7 +112,7 @@ void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledC
   set_viewpoint(arguments.input, arguments.viewpoint, cloud);
   warn_of_lines(arguments.input, cloud);
   throw_if_cancelled(&clock.progress());
-  std::vector<std::uint8_t> given = labels_in(arguments.input, cloud);
+  std::vector<std::uint8_t> given = labels_to_draw(arguments, cloud);
   if (!arguments.classify) check_edges(arguments.input, classes_of(cloud.comments));
   clock.begin("normals");
   const bool labelled_before = formats::have_labels(given);
@@ -182,25 +136,9 @@ void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledC
   take(std::move(classified.found), labelled);
 }
 
-/// The labels that a part of the cloud carries.
-detect::Classification given_labels(const LinesArguments& arguments, const PointCloud& part) {
-  detect::Classification found;
-  found.classes = formats::labels_of(part, arguments.input);
-  found.p_sharp = probabilities(arguments.input, part, "p_sharp");
-  found.p_smooth = probabilities(arguments.input, part, "p_smooth");
-  if (found.p_sharp.empty()) {  // find_lines() then uses classes only
-    found.p_smooth.clear();
-    for (const std::uint8_t its_class : found.classes) {
-      const bool edge = its_class == kSharpEdge || its_class == kSmoothEdge;
-      found.p_sharp.push_back(edge ? 1.0f : 0.0f);
-    }
-  }
-  found.p_smooth.resize(part.size());
-  return found;
-}
-
 /// Whether a point of the file has a label: reads up to the first that has.
 bool has_labels(const LinesArguments& arguments, const Progress& progress) {
+  if (!arguments.codes.empty()) return true;
   const auto reader = tiles::open_chunks(arguments.input);
   for (std::size_t chunk = 0; chunk < reader->parts(); ++chunk) {
     throw_if_cancelled(&progress);
@@ -220,7 +158,7 @@ void read_labelled_in_tiles(const LinesArguments& arguments, const TilesNeeded& 
                        .preparation = arguments.preparation,
                        .memory = needed.memory};
   if (!arguments.classify && has_labels(arguments, clock.progress())) {
-    request.given = [&](const PointCloud& part) { return given_labels(arguments, part); };
+    request.given = [&](const PointCloud& part) { return labels_of_part(arguments, part); };
   }
   const bool are_given = request.given != nullptr;
   say(needed.reason +
@@ -311,6 +249,7 @@ io::CoordinateSystem coordinate_system(const LinesArguments& arguments, const Po
 }
 
 void run(LinesArguments arguments, const Common& common) {
+  arguments.codes = label_codes(arguments.las_classification);
   arguments.drawing.overwrite = common.overwrite();
   check_input(arguments.input);
   check_outputs(arguments);
@@ -378,12 +317,16 @@ void add_lines(CLI::App& app, Common& common) {
   add_drawing_options(*command, *arguments);
   command->add_flag("--classify", arguments->classify,
                     "Classify first even if the points have labels");
+  add_label_codes_option(*command, arguments->las_classification);
   add_model_options(*command, arguments->model);
   add_memory_option(*command, arguments->memory);
   add_prepare_options(*command, arguments->preparation);
   add_viewpoint_option(*command, arguments->viewpoint);
+  CLI::Option* codes = command->get_option("--las-classification");
+  codes->excludes("--classify");
   for (const char* of_a_model :
        {"--model", "--no-context", "--no-boundary", "--exact", "--s-min", "--s-max"}) {
+    codes->excludes(of_a_model);
     command->get_option(of_a_model)->each([arguments](const std::string&) {
       arguments->classify = true;
     });

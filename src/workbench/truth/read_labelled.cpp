@@ -63,8 +63,7 @@ bool is_varied(const Attribute& attribute, std::size_t points) {
 std::string where_coded(const PointCloud& cloud) {
   const Attribute* field = find_classification(cloud);
   if (!field || !is_varied(*field, cloud.size())) return "";
-  return fmt::format("; --las-classification of train and evaluate takes them from its field {}",
-                     field->name);
+  return fmt::format("; --las-classification takes them from its field {}", field->name);
 }
 
 std::string why_unlabelled(const PointCloud& cloud) {
@@ -121,27 +120,39 @@ io::LoadedCloud read_labelled(const std::filesystem::path& path) {
   return loaded;
 }
 
-io::LoadedCloud read_labelled(const std::filesystem::path& path, const LabelCodes& codes) {
-  if (codes.empty()) return read_labelled(path);
-  io::LoadedCloud loaded = formats::read_cloud(path);
-  PointCloud& cloud = loaded.cloud;
-  if (cloud.empty()) return loaded;
+std::vector<std::uint8_t> coded_labels_of_part(const PointCloud& cloud, const LabelCodes& codes,
+                                               const std::filesystem::path& path) {
   const Attribute* field = find_classification(cloud);
   if (!field) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: has no field Classification", path.string()));
   }
-  cloud.labels.assign(cloud.size(), kUnlabelled);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
+  std::vector<std::uint8_t> labels(cloud.size(), kUnlabelled);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
     const auto found = std::ranges::find(codes, field->value(i), &LabelCodes::value_type::second);
-    if (found != codes.end()) cloud.labels[i] = found->first;
+    if (found != codes.end()) labels[i] = found->first;
   }
-  if (std::ranges::count(cloud.labels, kUnlabelled) == std::ssize(cloud.labels)) {
-    throw Error(ErrorKind::kInsufficient,
-                fmt::format("{}: no point has one of the codes given; its field {} holds {}",
-                            path.string(), field->name, some_values(*field, cloud.size())));
-  }
-  loaded.warnings.push_back(fmt::format("labels from its field {}", field->name));
+  return labels;
+}
+
+std::vector<std::uint8_t> coded_labels(const PointCloud& cloud, const LabelCodes& codes,
+                                       const std::filesystem::path& path) {
+  auto labels = coded_labels_of_part(cloud, codes, path);
+  if (formats::have_labels(labels)) return labels;
+  const Attribute& field = *find_classification(cloud);
+  throw Error(ErrorKind::kInsufficient,
+              fmt::format("{}: no point has one of the codes given; its field {} holds {}",
+                          path.string(), field.name, some_values(field, cloud.size())));
+}
+
+io::LoadedCloud read_labelled(const std::filesystem::path& path, const LabelCodes& codes) {
+  if (codes.empty()) return read_labelled(path);
+  io::LoadedCloud loaded = formats::read_cloud(path);
+  PointCloud& cloud = loaded.cloud;
+  if (cloud.empty()) return loaded;
+  cloud.labels = coded_labels(cloud, codes, path);
+  loaded.warnings.push_back(
+      fmt::format("labels from its field {}", find_classification(cloud)->name));
   return loaded;
 }
 

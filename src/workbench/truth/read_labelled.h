@@ -24,4 +24,12 @@ using LabelCodes = std::vector<std::pair<std::uint8_t, std::uint8_t>>;
 /// it has no such field, or no point of these codes, and as the readers do.
 io::LoadedCloud read_labelled(const std::filesystem::path& path, const LabelCodes& codes);
 
+/// These labels of a cloud that was read, with points. Throws as that.
+std::vector<std::uint8_t> coded_labels(const PointCloud& cloud, const LabelCodes& codes,
+                                       const std::filesystem::path& path);
+
+/// The same of a part of a cloud, of which all may be unlabelled.
+std::vector<std::uint8_t> coded_labels_of_part(const PointCloud& part, const LabelCodes& codes,
+                                               const std::filesystem::path& path);
+
 }  // namespace pcednet::truth
