@@ -359,6 +359,18 @@ for (const [name, options] of [
     assert.ok(contrasts.length > 20 && Math.min(...contrasts) >= 4.5, `${Math.min(...contrasts)}`);
     if (name === "the dark") assert.match(background, /rgb\((\d|[1-5]\d), /);
     assert.ok((await seen(other, 0)).pale > 0.004);
+    await other.emulateMedia({ media: "print" });
+    const [paper, darkest] = await other.evaluate(() => {
+      const plot = document.querySelector(".uplot canvas");
+      const { data } = plot.getContext("2d").getImageData(0, 0, plot.width, plot.height);
+      let least = 255; // of the axes' letters
+      for (let i = 0; i < data.length; i += 4) {
+        if (data[i + 3] > 200) least = Math.min(least, Math.max(data[i], data[i + 1], data[i + 2]));
+      }
+      return [getComputedStyle(document.body).backgroundColor, least];
+    });
+    assert.match(paper, /rgb\(2[3-5]\d, 2[3-5]\d, 2[3-5]\d\)/, "paper is light");
+    assert.ok(darkest < 130, `letters of a plot: ${darkest}`);
     await other.close();
   });
 }

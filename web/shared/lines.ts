@@ -142,7 +142,7 @@ function options(plot: LinePlot, width: number): uPlot.Options {
   };
 }
 
-/** A plot as wide as its place, drawn anew for another width or another theme. */
+/** A plot as wide as its place, drawn anew for another width, another theme, and for paper. */
 export function linePlot(plot: LinePlot): HTMLElement {
   const place = h("div", {
     class: "plot",
@@ -166,6 +166,8 @@ export function linePlot(plot: LinePlot): HTMLElement {
     if (drawn) drawn.setSize({ width, height: plot.height ?? 260 });
     else draw();
   }).observe(place);
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => place.isConnected && drawn && draw());
+  for (const other of ["(prefers-color-scheme: dark)", "print"]) {
+    matchMedia(other).addEventListener("change", () => place.isConnected && drawn && draw());
+  }
   return place;
 }
