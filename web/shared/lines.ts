@@ -158,6 +158,7 @@ export function linePlot(plot: LinePlot): HTMLElement {
     drawn?.destroy();
     const data: uPlot.AlignedData = [plot.x, ...plot.lines.map((line) => line.y)];
     drawn = new uPlot(options(plot, width), data, place);
+    drawn.batch(() => {}); // draws now: a page that is printed waits for nothing
   };
   new ResizeObserver(([entry]) => {
     const now = Math.floor(entry.contentRect.width);
