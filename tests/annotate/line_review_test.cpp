@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "io/scratch.h"
 #include "support/expect_error.h"
+#include "workbench/annotate/kept_decisions.h"
 
 namespace pcednet::annotate {
 namespace {
@@ -40,6 +42,24 @@ TEST(LineReview, ChangesNothingWhenItRefuses) {
   LineReview none;
   EXPECT_ERROR(ErrorKind::kInsufficient, decide(none, {}));
   EXPECT_ERROR(ErrorKind::kInsufficient, accepted_curves(none));
+}
+
+TEST(LineReview, KeepsDecisionsOnTheSameLinesInAFile) {
+  const io::Scratch scratch;
+  const auto file = decisions_of(scratch.path("a.json"), 1);
+  EXPECT_EQ(file.filename(), "a.json.lines-2");
+  LineReview review = three_lines();
+  const std::vector<Decision> open(3, Decision::kOpen);
+  EXPECT_EQ(kept_decisions(file, *review.curves), open);
+  decide(review, {.version = 5, .decision = Decision::kAccepted, .lines = {2}});
+  decide(review, {.version = 5, .decision = Decision::kRejected, .lines = {0}});
+  keep_decisions(file, review);
+  EXPECT_EQ(kept_decisions(file, *review.curves), review.decisions);
+  auto others = *review.curves;
+  others[1].points[1].z() = 1e-9;
+  EXPECT_EQ(kept_decisions(file, others), open);
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) - 3);
+  EXPECT_EQ(kept_decisions(file, *review.curves), open);
 }
 
 }  // namespace

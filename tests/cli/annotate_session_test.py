@@ -297,6 +297,13 @@ class AnnotateSession(AnnotateTest):
                              (200, f'attachment; filename="cube_lines.{format}"'))
             self.assertEqual(data, (self.folder / f"cube_lines.{format}").read_bytes())
         self.assertEqual(server.request("/api/download/lines?format=doc")[0], 400)
+        server.kill()
+        server = self.serve()
+        server.open()
+        server.until("/api/session", lambda s: s["prediction_version"] > 0 and s["run"])
+        again = self.find_lines(server, 1)
+        self.assertEqual([l["decision"] for l in again["lines"]], decisions)
+        self.assertEqual([l["path"] for l in again["lines"]], [l["path"] for l in found["lines"]])
         # A new search begins afresh; what runs is cancelled, as training is.
         self.assertEqual({l["decision"] for l in self.find_lines(server, 2)["lines"]}, {"open"})
         server.post("/api/lines/find")

@@ -82,7 +82,7 @@ class Session {
   LinesView lines(std::size_t cloud = 0) const;
   /// Finds the lines in the present prediction of a cloud, on the session's thread.
   void find_lines(std::size_t cloud = 0);
-  /// Throws as annotate::decide() does.
+  /// Throws as annotate::decide() and keep_decisions() do, and decides nothing then.
   void decide(const LinesDecided& wanted);
 
   /// The place of rank `after` + 1.

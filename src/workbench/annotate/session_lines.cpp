@@ -1,5 +1,6 @@
 #include "pcednet/core/error.h"
 #include "pcednet/lines/find_lines.h"
+#include "workbench/annotate/kept_decisions.h"
 #include "workbench/annotate/session_state.h"
 
 namespace pcednet::annotate {
@@ -31,7 +32,10 @@ void Session::find_lines(std::size_t cloud) {
 void Session::decide(const LinesDecided& wanted) {
   const Lock lock(state_->mutex);
   state_->check_cloud(wanted.cloud);
-  annotate::decide(state_->reviews[wanted.cloud], wanted);
+  LineReview decided = state_->reviews[wanted.cloud];
+  annotate::decide(decided, wanted);
+  keep_decisions(decisions_of(state_->options.project, wanted.cloud), decided);
+  state_->reviews[wanted.cloud] = std::move(decided);
   state_->emit(wanted);
 }
 
@@ -68,7 +72,10 @@ void Session::State::find_lines_once(std::size_t cloud, std::uint64_t mine) {
     const Lock lock(mutex);
     if (orders.generation != mine || orders.stopping) return;
     LineReview& review = reviews[cloud];
-    review.decisions.assign(curves->size(), Decision::kOpen);
+    const auto kept = decisions_of(options.project, cloud);
+    std::error_code ignored;
+    if (review.version > 0) std::filesystem::remove(kept, ignored);  // the user begins afresh
+    review.decisions = kept_decisions(kept, *curves);
     review.curves = std::move(curves);
     review.prediction_version = version;
     ++review.version;
