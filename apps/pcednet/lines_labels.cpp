@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -9,6 +10,8 @@
 #include "pcednet/core/error.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/labels.h"
+#include "pcednet/io/promote.h"
+#include "pcednet/io/text_scan.h"
 #include "workbench/truth/read_labelled.h"
 
 namespace pcednet::app {
@@ -31,6 +34,20 @@ std::vector<float> probabilities(const std::string& file, const PointCloud& clou
     return values;
   }
   return {};
+}
+
+/// A column that is named as labels and holds another number, such as a probability.
+void tell_of_no_labels(const std::string& file, const PointCloud& cloud) {
+  for (const Attribute& attribute : cloud.attributes) {
+    const auto& names = io::label_names();
+    const bool is_named = std::ranges::count(names, io::lower_case(attribute.name)) > 0;
+    if (!is_named || attribute.components != 1) continue;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (io::to_label(attribute.value(i))) continue;
+      return say(fmt::format("{}: its column {} is not taken for classes: it holds {}", file,
+                             attribute.name, attribute.value(i)));
+    }
+  }
 }
 
 }  // namespace
@@ -59,6 +76,7 @@ std::vector<std::uint8_t> labels_to_draw(const LinesArguments& arguments, const 
         "call it label if they are",
         file, doubtful));
   }
+  tell_of_no_labels(file, cloud);
   return {};
 }
 

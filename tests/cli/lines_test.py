@@ -327,6 +327,14 @@ class Lines(CliTest):
             self.assertEqual("its labels are used" in done.stderr, column == "is_edge")
             self.assertEqual(self.stated_count(done), 12)
 
+    def test_labels_that_are_probabilities_are_told(self):
+        p, _, label = cube(3000)
+        path = self.folder / "p.csv"
+        np.savetxt(path, np.column_stack([p, np.where(label == 2, 0.9, 0)]), fmt="%.9g", delimiter=",",
+                   header="x,y,z,label", comments="")
+        done = run("lines", path, *self.outputs("obj"))
+        self.assertIn(f"{path}: its column label is not taken for classes: it holds 0.9\n", done.stderr)
+
     def test_a_classified_file_has_the_lines_of_the_cloud_itself(self):
         """Its normals are estimates of what it was written with, its coordinates are rounded."""
         p, _, _ = cube(8000)
