@@ -63,7 +63,9 @@ bool is_varied(const Attribute& attribute, std::size_t points) {
 std::string where_coded(const PointCloud& cloud) {
   const Attribute* field = find_classification(cloud);
   if (!field || !is_varied(*field, cloud.size())) return "";
-  return fmt::format("; --las-classification takes them from its field {}", field->name);
+  return fmt::format(
+      "; --las-classification of lines, train and evaluate takes them from its field {}",
+      field->name);
 }
 
 std::string why_unlabelled(const PointCloud& cloud) {
