@@ -9,6 +9,9 @@
 #include "byte_size.h"
 #include "pcednet/cloud/class_table.h"
 #include "pcednet/core/error.h"
+#include "pcednet/detect/averages.h"
+#include "pcednet/detect/thinned_cloud.h"
+#include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/morton.h"
 
 namespace pcednet::app {
@@ -96,6 +99,34 @@ void check_memory(std::size_t points, std::uint64_t limit) {
                   points, size_text(limit)));
 }
 
+/// The averages in place of the points, where the cloud's noise is thick.
+PointsNearEdges averages_of(PointsNearEdges&& points, const detect::Averaging& averaging,
+                            const Progress& progress) {
+  const std::vector<Vec3>& positions = points.cloud.positions;
+  detect::ThinnedCloud thinned =
+      detect::thin_as_decided(positions, spatial::curve_order(positions), averaging, &progress);
+  detect::PreparedCloud prepared;
+  prepared.moved = std::move(thinned.positions);
+  prepared.positions = prepared.moved;
+  prepared.average_of = std::move(thinned.average_of);
+  detect::Classification found = of_averages(prepared, {.classes = std::move(points.classes),
+                                                        .p_sharp = std::move(points.p_sharp),
+                                                        .p_smooth = std::move(points.p_smooth)});
+  PointsNearEdges averages;
+  averages.cloud.foreign_elements = std::move(points.cloud.foreign_elements);
+  averages.cloud.normals.resize(prepared.positions.size());
+  averages.partial.resize(prepared.positions.size());
+  for (std::size_t i = 0; i < prepared.average_of.size(); ++i) {
+    const std::uint32_t own = prepared.average_of[i];
+    averages.cloud.normals[own] = points.cloud.normals[i];  // that of all its points
+    averages.partial[own] |= points.partial[i];
+  }
+  averages.cloud.positions = std::move(prepared.moved);
+  averages.classes = std::move(found.classes);
+  averages.p_sharp = std::move(found.p_sharp), averages.p_smooth = std::move(found.p_smooth);
+  return averages;
+}
+
 }  // namespace
 
 PointsNearEdges read_near_edges(const TiledCloud& cloud, std::uint64_t limit,
@@ -121,7 +152,8 @@ PointsNearEdges read_near_edges(const TiledCloud& cloud, std::uint64_t limit,
     stage.advance(part.size());
     return true;
   });
-  return near;
+  const detect::Averaging& averaging = cloud.plan().normals.averaging;
+  return averaging.deviation > 0.0 ? averages_of(std::move(near), averaging, progress) : near;
 }
 
 }  // namespace pcednet::app

@@ -7,7 +7,7 @@
 
 namespace pcednet::app {
 
-/// The points of a cloud that its lines come from.
+/// The points of a cloud that its lines come from; in thick noise, averages of them.
 struct PointsNearEdges {
   PointCloud cloud;  ///< positions and normals, and the file's content beside points
   std::vector<std::uint8_t> classes;

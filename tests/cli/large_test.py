@@ -10,7 +10,7 @@ import unittest
 import numpy as np
 
 from support import PROGRAM, CliTest, read_ply, run, write_ply
-from tiles_support import field
+from tiles_support import field, stairs
 
 CHANCE = ("quality", "scalar_p_sharp", "scalar_p_smooth")  # their last digits may differ
 LABELS = ("label", "scalar_edge_class", "red", "green", "blue")
@@ -150,6 +150,18 @@ class Large(CliTest):
         self.assertIn("no normals in the file", said)
         self.assertAlmostEqual(tiled / count, 1, delta=0.02)
         self.assertAlmostEqual(tiled_length / length, 1, delta=0.01)
+
+    def test_lines_of_thick_noise_come_from_averages(self):
+        write_ply(self.folder / "a.ply", stairs())
+        count, length, said = self.lines(self.folder / "a.ply")
+        self.assertIn("points are averaged to", said)
+        self.assertGreater(length, 100)
+        run("classify", self.folder / "a.ply")
+        for name in ("a.ply", "a_edges.ply"):
+            tiled, tiled_length, said = self.lines(self.folder / name, "--max-memory", "101M")
+            self.assertIn("points are averaged to", said)
+            self.assertAlmostEqual(tiled / count, 1, delta=0.05)
+            self.assertAlmostEqual(tiled_length / length, 1, delta=0.02)
 
     def test_what_cannot_be_cut_is_said(self):
         write_ply(self.folder / "a.ply", *field(3))

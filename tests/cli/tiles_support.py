@@ -30,6 +30,16 @@ def field(columns=4, points=2000, seed=1, normals=True):
     return p.astype(np.float32), np.concatenate(n) if normals else None
 
 
+def stairs(steps=10):
+    """Steps up and down, 6 by 3, with noise of twice the spacing: 21,600 points each, .05 apart."""
+    random_numbers = np.random.default_rng(3)
+    along, y = (random_numbers.uniform(0, size, 21_600 * steps) for size in (9 * steps, 6))
+    step, rest = np.divmod(along, 9)  # a tread, then a riser
+    rise = np.maximum(rest - 6, 0)
+    p = np.column_stack([6 * step + np.minimum(rest, 6), y, np.where(step % 2 == 0, rise, 3 - rise)])
+    return p + 0.1 * random_numbers.normal(size=p.shape)
+
+
 def sorted_rows(path, names=("x", "y", "z")):
     """The chosen columns of all points, in an order free of that in the file."""
     rows, _ = read_ply(path)

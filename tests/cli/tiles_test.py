@@ -6,7 +6,7 @@ import unittest
 import numpy as np
 
 from support import read_ply, run, write_ply
-from tiles_support import TilesTest, field, sorted_rows
+from tiles_support import TilesTest, field, sorted_rows, stairs
 
 
 class Tiles(TilesTest):
@@ -259,12 +259,18 @@ class Tiles(TilesTest):
                    self.folder / "q.json", expect=2)
         self.assertIn("differ in whether pcednet estimated their normals", said.stderr)
 
-    def test_noise_thicker_than_the_spacing_is_told(self):
-        p = np.random.default_rng(3).uniform(0, 10, (100_000, 3)) * (1, 1, 0)
-        p += 0.06 * np.random.default_rng(4).normal(size=p.shape)  # the spacing is .032
-        write_ply(self.folder / "a.ply", p)
-        said = run("tiles", "plan", self.folder / "a.ply", "-o", self.folder / "p.json").stderr
-        self.assertRegex(said, r"noise is (1\.[89]|2) times the spacing .*voxels of 0\.1[45] before")
+    def test_noise_thicker_than_the_spacing_is_averaged_as_in_the_whole_cloud(self):
+        write_ply(self.folder / "a.ply", stairs())
+        said = self.check_equal_to_untiled(self.folder / "a.ply", 0.9999, tile=6)
+        plan = json.loads((self.folder / "p.json").read_text())
+        self.assertLess(plan["buffer"], 25)  # of 60: no tile sees all points
+        self.assertAlmostEqual(plan["normals"]["averaged_noise"], 0.1, delta=0.01)
+        self.assertIn("points are averaged to", plan["notes"][0])
+        self.assertIn(plan["notes"][0], said)
+        # Not by a model without experts, nor where the smallest scale is given.
+        for options in ("--model", "cad"), ("--s-min", 0.06):
+            _, plan = self.make_plan(self.folder / "a.ply", *options, tile=6)
+            self.assertEqual(plan["normals"]["averaged_noise"], 0)
 
     def test_what_a_sample_shows_is_said_to_be_of_a_sample(self):
         p = np.random.default_rng(2).uniform(0, 100, (310_000, 3))

@@ -162,6 +162,30 @@ TEST(ThinnedClouds, FollowTheCloudToANationalGrid) {
   EXPECT_GT(static_cast<double>(same), 0.99 * static_cast<double>(positions.size()));
 }
 
+TEST(ThinnedClouds, HaveTheSamePointsInAPartOfTheCloud) {
+  const std::vector<Vec3> positions = Roof(2.0).positions;
+  const auto whole = thinned_of(positions);
+  ASSERT_TRUE(whole);
+  std::vector<std::uint32_t> part;  // y < 1, and what affects their averages
+  std::vector<Vec3> its;
+  const double reach = 2.0 * kAveragingReach * whole->averaging.deviation;
+  for (std::uint32_t i = 0; i < positions.size(); ++i) {
+    if (positions[i].y() > 1.0 + reach) continue;
+    part.push_back(i);
+    its.push_back(positions[i]);
+  }
+  const auto thinned = thin_as_decided(its, spatial::curve_order(its), whole->averaging);
+  EXPECT_LT(thinned.positions.size(), 0.9 * static_cast<double>(whole->positions.size()));
+  for (std::size_t k = 0; k < part.size(); ++k) {
+    const Vec3& expected = whole->positions[whole->average_of[part[k]]];
+    EXPECT_LT((its[k] - expected).cwiseAbs().maxCoeff(),
+              kAveragingReach * whole->averaging.deviation);
+    if (its[k].y() < 1.0) {
+      EXPECT_LT((thinned.positions[thinned.average_of[k]] - expected).norm(), 1e-12);
+    }
+  }
+}
+
 TEST(Averages, AreClassifiedInPlaceOfTheirPoints) {
   PointCloud cloud;
   cloud.positions = Roof(2.0).positions;

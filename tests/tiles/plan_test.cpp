@@ -29,7 +29,8 @@ class PlanFile : public testing::Test, protected test::OwnFolder {
     plan.box = {{0, 1, 2}, {3, 4, 0.1 + 0.2}};
     plan.model = {"general", "/models/general.safetensors", "abc", false, true, false};
     plan.s_min = 0.1, plan.s_max = 1.0 / 3.0;
-    plan.normals = {true, 48, 12, true, true, true, {0.01, {-1.0, 2.0, 0.5}, 0.04}};
+    plan.normals = {
+        true, 48, 12, true, true, true, {0.01, {-1.0, 2.0, 0.5}, 0.04}, {0.02, {1.0, 2.0, 3.5}}};
     plan.pyramids = {
         {{0, 1, 2}, 3.0, {{false, gls::Crowd::kKeep}, {true, gls::Crowd::kMergeByAxis}}},
         {{0, 1, 2}, 3.0, {{true, gls::Crowd::kKeep}, {false, gls::Crowd::kMerge}}}};
@@ -68,6 +69,8 @@ TEST_F(PlanFile, ComesBackAsItWas) {
   EXPECT_EQ(back.normals.rounding.step, 0.01);
   EXPECT_EQ(back.normals.rounding.origin, Vec3(-1.0, 2.0, 0.5));
   EXPECT_EQ(back.normals.rounding.spacing, 0.04);
+  EXPECT_EQ(back.normals.averaging.deviation, 0.02);
+  EXPECT_EQ(back.normals.averaging.middle, Vec3(1.0, 2.0, 3.5));
   EXPECT_TRUE(back.normals.made && back.normals.exact_planes && back.normals.exact);
   EXPECT_TRUE(back.normals.noisy);
   ASSERT_EQ(back.pyramids.size(), 4u);

@@ -17,6 +17,10 @@ namespace pcednet::detect {
 /// In PreparedCloud::average_of: the point has no finite position.
 inline constexpr std::uint32_t kNoAverage = std::numeric_limits<std::uint32_t>::max();
 
+/// In deviations of the noise, along each axis: an average is not farther from its points, nor from
+/// those that affect it.
+inline constexpr double kAveragingReach = 7.5;
+
 /// Whether thick noise is averaged before this model classifies. A model without experts knows the
 /// points as they are from its training, and so do those who give s_min.
 bool averages_noise(const EdgeModel& model);

@@ -186,35 +186,36 @@ void order_finite_points(PreparedCloud& prepared) {
                                        points - finite, points));
 }
 
-/// Puts averages in place of points in thick noise, see averages.h; false if there is none.
-bool average_noise(PreparedCloud& prepared, const Progress* progress) {
-  auto thinned = thin_noise(prepared.positions, prepared.curve, progress);
-  if (!thinned) return false;
-  prepared.notes.push_back(note_on(*thinned));
-  prepared.moved = std::move(thinned->positions);
-  prepared.average_of = std::move(thinned->average_of);
+/// Puts fewer points in place of the cloud's, see averages.h.
+void use_fewer(std::vector<Vec3> positions, std::vector<std::uint32_t> average_of,
+               PreparedCloud& prepared) {
+  prepared.moved = std::move(positions);
+  prepared.average_of = std::move(average_of);
   prepared.positions = prepared.moved;
   prepared.curve = spatial::curve_order(prepared.positions);
-  return true;
 }
 
-/// Leaves out the crowds at the poles of scanners, see scanner_poles.h; false if there are none.
-bool leave_out_poles(PreparedCloud& prepared, const Points& cloud, const Progress* progress) {
-  const std::vector<Vec3> scanners = cloud.scanners();
-  if (scanners.empty()) return false;
-  auto thinned = without_poles(prepared.positions, scanners, prepared.curve, progress);
-  if (!thinned) return false;
-  prepared.notes.push_back(note_on(*thinned));
-  std::vector<Vec3> kept;
-  for (const std::uint32_t point : thinned->kept) {
-    kept.push_back(prepared.positions[point]);
-    prepared.scanners.push_back(scanners[point]);
+/// The parts of the cloud that are used then.
+Points use_averages(ThinnedCloud&& thinned, PreparedCloud& prepared) {
+  prepared.decision.averaging = thinned.averaging;
+  use_fewer(std::move(thinned.positions), std::move(thinned.average_of), prepared);
+  return {prepared.positions, {}, [] { return std::vector<Vec3>(); }};
+}
+
+/// The points to use: fewer where noise is thick, or at the poles of scanners.
+Points averaged(const Points& cloud, PreparedCloud& prepared, const Progress* progress) {
+  if (auto thinned = thin_noise(prepared.positions, prepared.curve, progress)) {
+    prepared.notes.push_back(note_on(*thinned));
+    return use_averages(std::move(*thinned), prepared);
   }
-  prepared.moved = std::move(kept);
-  prepared.average_of = std::move(thinned->average_of);
-  prepared.positions = prepared.moved;
-  prepared.curve = spatial::curve_order(prepared.positions);
-  return true;
+  const std::vector<Vec3> scanners = cloud.scanners();
+  if (scanners.empty()) return cloud;
+  auto thinned = without_poles(prepared.positions, scanners, prepared.curve, progress);
+  if (!thinned) return cloud;
+  prepared.notes.push_back(note_on(*thinned));
+  prepared.scanners = std::move(thinned->scanners);
+  use_fewer(std::move(thinned->positions), std::move(thinned->average_of), prepared);
+  return {prepared.positions, {}, [&prepared] { return prepared.scanners; }};
 }
 
 /// Spreads rounded positions.
@@ -324,6 +325,24 @@ void orient_mixed(PreparedCloud& prepared, const Points& cloud, const Progress* 
   prepared.reoriented = true;
 }
 
+/// Decisions for the cloud that this one is part of.
+void carry_out(const NormalsDecision& decision, const Points& cloud, PreparedCloud& prepared,
+               const Progress* progress) {
+  prepared.decision = decision;
+  Points used = cloud;
+  if (decision.averaging.deviation > 0.0) {
+    used = use_averages(
+        thin_as_decided(prepared.positions, prepared.curve, decision.averaging, progress),
+        prepared);
+  }
+  spread_positions(decision.rounding, prepared);
+  if (decision.made) estimate(prepared, used, "normals as decided", progress);
+  if (prepared.normals.empty()) {
+    throw Error(ErrorKind::kUsage,
+                "the cloud has no normals, and the decision is to use them as they are");
+  }
+}
+
 PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
                              const Progress* progress) {
   if (cloud.empty()) throw Error(ErrorKind::kInsufficient, "the cloud has no points");
@@ -333,21 +352,11 @@ PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
   prepared.normals = cloud.normals;
   order_finite_points(prepared);
   if (options.decided) {
-    prepared.decision = *options.decided;
-    spread_positions(prepared.decision.rounding, prepared);
-    if (options.decided->made) estimate(prepared, cloud, "normals as decided", progress);
-    if (prepared.normals.empty()) {
-      throw Error(ErrorKind::kUsage,
-                  "the cloud has no normals, and the decision is to use them as they are");
-    }
+    carry_out(*options.decided, cloud, prepared, progress);
     return prepared;
   }
-  Points used = cloud;
-  const bool may_average = options.average_noise && !cloud.has_normals();
-  if (may_average &&
-      (average_noise(prepared, progress) || leave_out_poles(prepared, cloud, progress))) {
-    used = {prepared.positions, {}, [&prepared] { return prepared.scanners; }};
-  }
+  const Points used =
+      options.average_noise && !cloud.has_normals() ? averaged(cloud, prepared, progress) : cloud;
   estimate_missing(prepared, used, progress);
   if (prepared.made.empty()) note_misfits(prepared);
   if (prepared.made.empty() && !options.keep_orientation) orient_mixed(prepared, cloud, progress);

@@ -20,6 +20,12 @@ struct Rounding {
   double spacing = 0.0;        ///< of neighbouring points, about
 };
 
+/// That averages take the place of points in thick noise, see averages.h.
+struct Averaging {
+  double deviation = 0.0;      ///< of the noise; 0: the points are described as they are
+  Vec3 middle = Vec3::Zero();  ///< a corner of the voxels
+};
+
 /// The decisions on normals that depend on all points of a cloud.
 struct NormalsDecision {
   bool made =
@@ -30,6 +36,7 @@ struct NormalsDecision {
   bool exact_planes = false;   ///< points on plane faces get the normal of the face
   bool exact = false;          ///< normals were missing, and the points are without noise
   Rounding rounding = {};      ///< of the positions, where normals were missing
+  Averaging averaging = {};    ///< the same, before all else
 };
 
 /// The comment of a cloud whose normals are all estimated from its positions, by this program.

@@ -101,10 +101,10 @@ std::optional<WithoutPoles> without_poles(std::span<const Vec3> positions,
   std::vector<std::uint32_t> number(positions.size(), kNoAverage);
   for (std::uint32_t i = 0; i < stands_for.size(); ++i) {
     if (stands_for[i] != i) continue;
-    number[i] = static_cast<std::uint32_t>(found.kept.size());
-    found.kept.push_back(i);
+    number[i] = static_cast<std::uint32_t>(found.positions.size());
+    found.positions.push_back(positions[i]), found.scanners.push_back(scanners[i]);
   }
-  found.crowded = curve.size() - found.kept.size();
+  found.crowded = curve.size() - found.positions.size();
   if (found.crowded * kLeastShare < curve.size()) return std::nullopt;
   found.average_of.assign(positions.size(), kNoAverage);
   for (std::size_t i = 0; i < stands_for.size(); ++i) {

@@ -18,9 +18,9 @@ namespace pcednet::detect {
 
 /// Fewer points in place of a cloud's, without the crowds at the poles of scanners.
 struct WithoutPoles {
-  std::vector<std::uint32_t> kept;        ///< ascending
-  std::vector<std::uint32_t> average_of;  ///< of each point, as an index of `kept`; kNoAverage
-  std::size_t crowded;                    ///< points that were in a crowd and are not kept
+  std::vector<Vec3> positions, scanners;  ///< of the points that are kept, in their order
+  std::vector<std::uint32_t> average_of;  ///< of each point, see PreparedCloud
+  std::size_t crowded;                    ///< points that are not kept
 };
 
 /// Leaves out points more than 60 degrees above or below their scanner whose beam is nearer than

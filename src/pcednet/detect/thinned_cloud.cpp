@@ -28,22 +28,24 @@ struct InVoxel {
   }
 };
 
-std::vector<InVoxel> by_voxels(std::span<const Vec3> points, double edge) {
-  const Vec3 middle = middle_of(points);
+std::vector<InVoxel> by_voxels(std::span<const Vec3> points, const Averaging& averaging) {
+  const double edge = ThickNoise{.deviation = averaging.deviation}.voxel();
   std::vector<InVoxel> sorted;
   sorted.reserve(points.size());
   for (std::uint32_t i = 0; i < points.size(); ++i) {
-    const Vec3 voxel = ((points[i] - middle) / edge).array().floor();
+    const Vec3 voxel = ((points[i] - averaging.middle) / edge).array().floor();
     sorted.push_back({{voxel.x(), voxel.y(), voxel.z()}, i});
   }
   std::sort(sorted.begin(), sorted.end());
   return sorted;
 }
 
-/// The mean of the points of each voxel; `points` are those on the curve, in its order.
-void take_means(std::span<const Vec3> points, std::span<const std::uint32_t> curve,
-                ThinnedCloud& thinned) {
-  const auto sorted = by_voxels(points, thinned.noise.voxel());
+/// The mean of the points of each voxel; `points` are those on the curve, in its order, of `all`.
+ThinnedCloud means_by_voxels(std::span<const Vec3> points, std::span<const std::uint32_t> curve,
+                             const Averaging& averaging, std::size_t all) {
+  ThinnedCloud thinned{
+      .averaging = averaging, .positions = {}, .average_of = std::vector(all, kNoAverage)};
+  const auto sorted = by_voxels(points, thinned.averaging);
   for (auto begin = sorted.begin(); begin != sorted.end();) {
     const auto end = std::find_if(begin, sorted.end(),
                                   [&](const InVoxel& one) { return one.voxel != begin->voxel; });
@@ -56,13 +58,14 @@ void take_means(std::span<const Vec3> points, std::span<const std::uint32_t> cur
     thinned.positions.push_back(first + sum / static_cast<double>(end - begin));
     begin = end;
   }
+  return thinned;
 }
 
 /// Moves each to the mean of the points around it, twice.
 void average(std::span<const Vec3> points, ThinnedCloud& thinned, const Progress* progress) {
   const spatial::KdTree tree(points);
   const auto move = [&](Vec3& place, std::vector<spatial::Neighbour>& near) {
-    tree.within_unsorted(place, kAveraged * thinned.noise.deviation, near);
+    tree.within_unsorted(place, kAveraged * thinned.averaging.deviation, near);
     if (near.empty()) return;
     Vec3 sum = Vec3::Zero();
     for (const spatial::Neighbour& other : near) sum += points[other.index] - place;
@@ -85,10 +88,19 @@ std::optional<ThinnedCloud> thin_noise(std::span<const Vec3> positions,
                                        const Progress* progress) {
   const auto noise = find_thick_noise(positions, curve);
   if (!noise) return std::nullopt;
-  ThinnedCloud thinned{*noise, {}, std::vector(positions.size(), kNoAverage)};
   const std::vector<Vec3> points = spatial::in_order(positions, curve);
-  take_means(points, curve, thinned);
+  ThinnedCloud thinned =
+      means_by_voxels(points, curve, {noise->deviation, middle_of(points)}, positions.size());
   if (thinned.positions.size() < kLeastLeft) return std::nullopt;
+  thinned.noise = *noise;
+  average(points, thinned, progress);
+  return thinned;
+}
+
+ThinnedCloud thin_as_decided(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
+                             const Averaging& averaging, const Progress* progress) {
+  const std::vector<Vec3> points = spatial::in_order(positions, curve);
+  ThinnedCloud thinned = means_by_voxels(points, curve, averaging, positions.size());
   average(points, thinned, progress);
   return thinned;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pcednet/core/progress.h"
+#include "pcednet/detect/prepare.h"
 #include "pcednet/detect/thick_noise.h"
 
 namespace pcednet::detect {
@@ -14,7 +15,8 @@ namespace pcednet::detect {
 /// Fewer points in place of a cloud's, with less noise: no scale near the spacing shows an edge
 /// through noise that is thicker than the spacing.
 struct ThinnedCloud {
-  ThickNoise noise;
+  ThickNoise noise = {};  ///< as found
+  Averaging averaging;
   std::vector<Vec3> positions;            ///< one for each voxel with points
   std::vector<std::uint32_t> average_of;  ///< of each point, see PreparedCloud
 };
@@ -28,6 +30,10 @@ struct ThinnedCloud {
 std::optional<ThinnedCloud> thin_noise(std::span<const Vec3> positions,
                                        std::span<const std::uint32_t> curve,
                                        const Progress* progress = nullptr);
+
+/// The same as decided for the cloud that these are part of, without its noise.
+ThinnedCloud thin_as_decided(std::span<const Vec3> positions, std::span<const std::uint32_t> curve,
+                             const Averaging& averaging, const Progress* progress = nullptr);
 
 /// For the user: "noise is 2.1 times the spacing: 500000 points are averaged to 60000".
 std::string note_on(const ThinnedCloud& thinned);

@@ -12,7 +12,7 @@
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel_loops.h"
 #include "pcednet/detect/rounding.h"
-#include "pcednet/detect/thick_noise.h"
+#include "pcednet/detect/thinned_cloud.h"
 #include "pcednet/gls/fast_scale_space.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/spatial/curve_order.h"
@@ -55,11 +55,12 @@ std::vector<BoundingBox> choose_cubes(std::span<const Vec3> sample, const Plan& 
   return cubes;
 }
 
-/// All points if there are no cubes.
+/// All points with a place if there are no cubes.
 void append_inside(const PointCloud& part, std::span<const BoundingBox> cubes, PointCloud& to) {
   std::vector<std::uint32_t> inside;
   for (std::uint32_t i = 0; i < part.size(); ++i) {
-    if (cubes.empty() || any_holds(cubes, part.positions[i])) inside.push_back(i);
+    const Vec3& position = part.positions[i];
+    if (cubes.empty() ? has_place(position) : any_holds(cubes, position)) inside.push_back(i);
   }
   append_surface(part, inside, to);
 }
@@ -79,12 +80,16 @@ std::vector<std::vector<std::uint32_t>> batches_of(std::span<const Vec3> positio
   return batches;
 }
 
-void note(const detect::PreparedCloud& prepared, Plan& plan) {
+/// How notes begin that are of so many points.
+std::string whose_notes(std::size_t points, bool are_all) {
+  return are_all ? "" : fmt::format("in a sample of {} points: ", points);
+}
+
+/// `are_all`: whether these are all points that are described.
+void note(const detect::PreparedCloud& prepared, bool are_all, Plan& plan) {
   plan.normals = prepared.decision;
   plan.normals.rounding.origin = plan.box.min;  // as of the cloud as a whole
-  const std::size_t points = prepared.positions.size();
-  const std::string whose =
-      points < plan.points() ? fmt::format("in a sample of {} points: ", points) : "";
+  const std::string whose = whose_notes(prepared.positions.size(), are_all);
   for (const std::string& its : prepared.notes) plan.notes.push_back(whose + its);
 }
 
@@ -99,29 +104,25 @@ std::vector<Vec3> estimate_in_batches(const PointCloud& dense, detect::PrepareOp
     points.comments = dense.comments;
     append_surface(dense, batch, points);
     const detect::PreparedCloud prepared = detect::prepare(points, options, progress);
-    if (!options.decided) note(prepared, plan);
+    if (!options.decided) note(prepared, false, plan);
     options.decided = plan.normals;
     for (std::size_t i = 0; i < batch.size(); ++i) normals[batch[i]] = prepared.normals[i];
   }
   return normals;
 }
 
-/// Tiles describe the points as they are.
-void note_noise(const PreparedSample& sample, Plan& plan) {
-  if (!plan.normals.noisy) return;
-  const auto noise = detect::find_thick_noise(sample.positions, sample.curve);
-  if (!noise) return;
-  plan.notes.push_back(
-      fmt::format("{} and hides most edges: tiles describe the points as they are; thin the cloud "
-                  "to the means of voxels of {:.2g} before",
-                  text_of(*noise), noise->voxel()));
+/// Whether the normals of the cloud are used, at most with other signs.
+bool uses_normals(const PointCloud& cloud, const detect::PrepareOptions& options) {
+  return cloud.has_normals() && (options.keep_orientation || !detect::has_estimated_normals(cloud));
 }
 
-PreparedSample prepare_sample(const PointCloud& dense, const detect::PrepareOptions& options,
+}  // namespace
+
+PreparedSample decide_normals(const DenseSample& all, const detect::PrepareOptions& options,
                               Plan& plan, const Progress* progress) {
-  PreparedSample sample;
-  const bool as_given = options.keep_orientation || !detect::has_estimated_normals(dense);
-  if (!(dense.has_normals() && as_given) && dense.size() > kBatchPoints) {
+  const PointCloud& dense = all.cloud;
+  PreparedSample sample{.is_all = all.is_all};
+  if (!uses_normals(dense, options) && dense.size() > kBatchPoints) {
     sample.positions = dense.positions;
     sample.made = estimate_in_batches(dense, options, plan, progress);
     sample.normals = sample.made;
@@ -133,25 +134,24 @@ PreparedSample prepare_sample(const PointCloud& dense, const detect::PrepareOpti
     return sample;
   }
   detect::PreparedCloud prepared = detect::prepare(dense, options, progress);
-  note(prepared, plan);
+  note(prepared, all.is_all, plan);
   sample.positions = prepared.positions, sample.normals = prepared.normals;
   sample.curve = std::move(prepared.curve);
   sample.moved = std::move(prepared.moved), sample.made = std::move(prepared.made);
   return sample;
 }
 
-}  // namespace
-
-PointCloud read_dense_sample(std::span<const Vec3> sample, const Plan& plan,
-                             const Progress* progress) {
-  std::vector<BoundingBox> cubes;
-  if (sample.size() < plan.points()) cubes = choose_cubes(sample, plan);
+DenseSample read_dense_sample(const SampledPoints& sample, const Plan& plan,
+                              const Progress* progress) {
+  DenseSample all{.is_all = sample.is_all};
+  if (!sample.is_all) all.cubes = choose_cubes(sample.positions, plan);
+  const std::vector<BoundingBox>& cubes = all.cubes;
   const auto is_wanted = [&](const Chunk& chunk) {
     return cubes.empty() || std::any_of(cubes.begin(), cubes.end(), [&](const BoundingBox& cube) {
              return cube.meets(chunk.box);
            });
   };
-  PointCloud dense;
+  PointCloud& dense = all.cloud;
   const PointCloud outline = outline_of(plan);
   if (plan.inputs.size() == 1) dense.scanners = outline.scanners;
   dense.position_type = outline.position_type;
@@ -162,14 +162,23 @@ PointCloud read_dense_sample(std::span<const Vec3> sample, const Plan& plan,
                    [&](const PointCloud& part, std::size_t) { append_inside(part, cubes, dense); });
     stage.advance();
   }
-  return dense;
+  return all;
 }
 
-PreparedSample decide_normals(const PointCloud& dense, const detect::PrepareOptions& options,
-                              Plan& plan, const Progress* progress) {
-  PreparedSample sample = prepare_sample(dense, options, plan, progress);
-  note_noise(sample, plan);
-  return sample;
+detect::Averaging average_noise(const detect::PrepareOptions& options, DenseSample& dense,
+                                Plan& plan, const Progress* progress) {
+  PointCloud& cloud = dense.cloud;
+  if (uses_normals(cloud, options)) return {};
+  const auto curve = spatial::curve_order(cloud.positions);
+  auto thinned = detect::thin_noise(cloud.positions, curve, progress);
+  if (!thinned) return {};
+  plan.notes.push_back(whose_notes(cloud.size(), dense.is_all) + note_on(*thinned));
+  dense.share = static_cast<double>(thinned->positions.size()) / static_cast<double>(cloud.size());
+  const ScalarType type = cloud.position_type;
+  cloud = {};
+  cloud.positions = std::move(thinned->positions);
+  cloud.position_type = type;
+  return thinned->averaging;
 }
 
 void decide_voxels(const PreparedSample& sample, const detect::EdgeModel& model, Plan& plan,
@@ -177,9 +186,8 @@ void decide_voxels(const PreparedSample& sample, const detect::EdgeModel& model,
   gls::ScaleSpaceOptions descriptor = model.descriptor;
   descriptor.range.s_min = plan.s_min, descriptor.range.s_max = plan.s_max;
   const std::size_t octaves = gls::octave_count(descriptor.range);
-  // Rounded positions are spread: where the sample has all, their box is known.
-  const BoundingBox box =
-      sample.positions.size() == plan.points() ? bounding_box(sample.positions) : plan.box;
+  // Rounded positions are spread, others averaged: where the sample has all, their box is known.
+  const BoundingBox box = sample.is_all ? bounding_box(sample.positions) : plan.box;
   std::optional<gls::FastScaleSpace> space;
   for (std::size_t octave = 0; octave < octaves; ++octave) {
     gls::PyramidPlan& pyramid = plan.pyramids.emplace_back();

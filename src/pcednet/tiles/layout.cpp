@@ -30,6 +30,7 @@ constexpr std::size_t kMostTiles = 1'000'000;
 // docs/large.md.
 constexpr std::uint64_t kFixedBytes = 100'000'000, kBytesPerPoint = 300;
 constexpr std::uint64_t kNormalBytes = 150, kNeighbourBytes = 10, kMovedBytes = sizeof(Vec3);
+constexpr std::uint64_t kAveragedBytes = 60;  ///< there are fewer normals
 
 /// Sums of counts over rectangles of cells. Holds only columns and rows that have points: there may
 /// be far gaps between them.
@@ -237,6 +238,7 @@ Vec3 shares_of(const BoundingBox& box, const BoundingBox& whole) {
 
 std::uint64_t memory_for(std::uint64_t points, const detect::NormalsDecision& normals) {
   std::uint64_t made = normals.made ? kNormalBytes + kNeighbourBytes * normals.neighbours : 0;
+  if (normals.averaging.deviation > 0.0) made = kAveragedBytes;
   if (normals.rounding.step > 0.0) made += kMovedBytes;
   return kFixedBytes + (kBytesPerPoint + made) * points;
 }

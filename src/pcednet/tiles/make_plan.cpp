@@ -8,6 +8,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
+#include "pcednet/detect/averages.h"
 #include "pcednet/detect/boundary.h"
 #include "pcednet/detect/context.h"
 #include "pcednet/detect/piece.h"
@@ -15,6 +16,7 @@
 #include "pcednet/formats/cloud_facts.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/normals/exact_planes.h"
+#include "pcednet/spatial/curve_order.h"
 #include "pcednet/tiles/agreement.h"
 #include "pcednet/tiles/dense_sample.h"
 #include "pcednet/tiles/inputs.h"
@@ -47,6 +49,33 @@ bool is_crowded(const Plan& plan) {
   });
 }
 
+/// The parts of cubes whose averages do not depend on points beyond them.
+std::vector<BoundingBox> inner_parts(std::vector<BoundingBox> cubes,
+                                     const detect::Averaging& averaging) {
+  const Vec3 margin = Vec3::Constant(2.0 * detect::kAveragingReach * averaging.deviation);
+  for (BoundingBox& cube : cubes) cube = {cube.min + margin, cube.max - margin};
+  return cubes;
+}
+
+/// The spacing of the points as they are described, and all points counted: `sample` is of all, and
+/// `prepared` what is described of the dense one.
+Spacing measure(const SampledPoints& sample, const DenseSample& dense,
+                const PreparedSample& prepared, const Plan& plan, const gls::ScaleRange& given,
+                CellCounts& counts, const Progress* progress) {
+  const detect::Averaging& averaging = plan.normals.averaging;
+  const bool averaged = averaging.deviation > 0.0;
+  if (sample.is_all) {
+    counts.add(sample.positions);
+    counts.add_without_place(plan.points() - sample.positions.size());
+  } else if (averaged) {
+    stream_points(plan, "count", progress, [&](auto positions) { counts.add(positions); });
+  }
+  if (!averaged) return find_spacing(sample, plan, given, counts, progress);
+  const std::vector<Vec3> described = spatial::in_order(prepared.positions, prepared.curve);
+  const std::vector<BoundingBox> inner = inner_parts(dense.cubes, averaging);
+  return find_spacing({described, true, inner}, plan, given, counts, progress);
+}
+
 /// Sets the distance around a core within which points affect the points in it.
 void set_buffer(const detect::EdgeModel& model, const Spacing& spacing, Plan& plan) {
   // Voxels measure an eps of the scale; where a level merges crowds, blocks of 8 cells do.
@@ -64,7 +93,8 @@ void set_buffer(const detect::EdgeModel& model, const Spacing& spacing, Plan& pl
   plan.reach = plan.model.context && model.context
                    ? reach_of(static_cast<std::size_t>(detect::kContextSizes.back()), spacing.wide)
                    : 0.0;
-  plan.buffer = std::max(plan.reach + described, boundary) + normals;
+  const double averages = 2.0 * detect::kAveragingReach * plan.normals.averaging.deviation;
+  plan.buffer = std::max(plan.reach + described, boundary) + normals + averages;
 }
 
 /// How often the average point is read, if each tile reads the chunks that it meets.
@@ -245,6 +275,18 @@ std::size_t count_places(std::span<const Vec3> positions) {
   return positions.size() - copies;
 }
 
+/// The decisions on points and normals.
+PreparedSample prepare_sample(const PlanRequest& request, const detect::EdgeModel& model,
+                              DenseSample& dense, Plan& plan, const Progress* progress) {
+  const detect::PrepareOptions options = {.keep_orientation = request.keep_orientation};
+  detect::Averaging averaging;
+  if (detect::averages_noise(model)) averaging = average_noise(options, dense, plan, progress);
+  PreparedSample prepared = decide_normals(dense, options, plan, progress);
+  plan.normals.averaging = averaging;
+  plan.places = static_cast<std::size_t>(dense.share * static_cast<double>(plan.places));
+  return prepared;
+}
+
 /// The points that count for the choice of experts, of which `places` are the whole: those of a
 /// larger cloud where it is a piece of one.
 std::size_t points_for_experts(const PointCloud& whole, std::size_t places, bool keep_orientation,
@@ -318,16 +360,15 @@ Plan make_plan(const PlanRequest& request, const detect::EdgeModel& model,
   check_order_early(request, plan, sample);
   CellCounts counts(cell);
 
-  const PointCloud dense = read_dense_sample(sample, plan, progress);
-  const PreparedSample prepared =
-      decide_normals(dense, {.keep_orientation = request.keep_orientation}, plan, progress);
+  DenseSample dense = read_dense_sample({sample, is_all}, plan, progress);
+  const PreparedSample prepared = prepare_sample(request, model, dense, plan, progress);
   const Spacing spacing =
-      find_spacing({sample, is_all}, plan, model.descriptor.range, counts, progress);
+      measure({sample, is_all}, dense, prepared, plan, model.descriptor.range, counts, progress);
   if (is_all) {
-    plan.places = points_for_experts(dense, plan.places, request.keep_orientation, model);
+    plan.places = points_for_experts(dense.cloud, plan.places, request.keep_orientation, model);
   }
   plan.s_min = spacing.range.s_min, plan.s_max = spacing.range.s_max;
-  note_float_rounding(model, dense.position_type, prepared, plan);
+  note_float_rounding(model, dense.cloud.position_type, prepared, plan);
   decide_voxels(prepared, model, plan, progress);
 
   set_buffer(model, spacing, plan);

@@ -11,6 +11,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/json.h"
 #include "pcednet/core/version.h"
+#include "pcednet/detect/averages.h"
 #include "pcednet/formats/file_name.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/io/input_file.h"
@@ -129,6 +130,7 @@ PlannedModel model_of(const Json& j, const Paths& paths) {
 
 Json json_of(const detect::NormalsDecision& normals) {
   const detect::Rounding& rounding = normals.rounding;
+  const detect::Averaging& averaging = normals.averaging;
   return {{"made", normals.made},
           {"neighbours", normals.neighbours},
           {"fewest_neighbours", normals.fewest},
@@ -137,7 +139,9 @@ Json json_of(const detect::NormalsDecision& normals) {
           {"exact", normals.exact},
           {"rounded_to", rounding.step},
           {"rounded_from", json_of(rounding.origin)},
-          {"spacing", rounding.spacing}};
+          {"spacing", rounding.spacing},
+          {"averaged_noise", averaging.deviation},
+          {"averaged_about", json_of(averaging.middle)}};
 }
 
 detect::NormalsDecision normals_in(const Json& j) {
@@ -147,7 +151,8 @@ detect::NormalsDecision normals_in(const Json& j) {
           j.at("noisy"),
           j.at("exact_planes"),
           j.at("exact"),
-          {j.at("rounded_to"), vec3_of(j.at("rounded_from")), j.at("spacing")}};
+          {j.at("rounded_to"), vec3_of(j.at("rounded_from")), j.at("spacing")},
+          {j.at("averaged_noise"), vec3_of(j.at("averaged_about"))}};
 }
 
 Json json_of(const gls::PyramidPlan& pyramid) {
@@ -236,19 +241,21 @@ Plan plan_of(const Json& j, const Paths& paths, std::string& member) {
 bool are_sound(const std::vector<gls::PyramidPlan>& pyramids, const Plan& plan) {
   if (pyramids.empty() || pyramids.size() > gls::kOctaves) return false;
   const double side = (plan.box.max - plan.box.min).maxCoeff();
-  const double spread = plan.normals.rounding.step;  // of rounded positions
+  const double moved =
+      plan.normals.rounding.step + detect::kAveragingReach * plan.normals.averaging.deviation;
   const std::size_t levels = pyramids.front().levels.size();
   return (levels == 0 || !plan.model.exact) &&
          std::all_of(pyramids.begin(), pyramids.end(), [&](const gls::PyramidPlan& pyramid) {
            return pyramid.levels.size() == levels &&
-                  (pyramid.corner - plan.box.min).cwiseAbs().maxCoeff() <= spread &&
-                  std::abs(pyramid.side - side) <= spread;
+                  (pyramid.corner - plan.box.min).cwiseAbs().maxCoeff() <= moved &&
+                  std::abs(pyramid.side - side) <= 2.0 * moved;
          });
 }
 
 /// The name of a member with a value that no plan has; empty if all are sound.
 std::string unsound_member(const Plan& plan) {
   const auto is_length = [](double v) { return std::isfinite(v) && v >= 0.0; };
+  const detect::Averaging& averaging = plan.normals.averaging;
   if (!(std::isfinite(plan.grid.cell) && plan.grid.cell > 0.0)) return "cell";
   if (plan.grid.across < 1) return "cells_across";
   if (!is_length(plan.buffer)) return "buffer";
@@ -256,6 +263,9 @@ std::string unsound_member(const Plan& plan) {
   if (!(0.0 < plan.s_min && plan.s_min < plan.s_max)) return "scales";
   if (!are_sound(plan.pyramids, plan)) return "pyramids";
   if (plan.normals.neighbours == 1 || plan.normals.neighbours > 10'000) return "normals";
+  if (!is_length(averaging.deviation) || (averaging.deviation > 0.0 && !plan.normals.made)) {
+    return "normals";
+  }
   if (plan.memory == 0) return "memory";
   if (!plan.las_steps.empty() && plan.las_steps.size() != 6) return "las_steps";
   if (plan.inputs.empty()) return "inputs";

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "pcednet/core/error.h"
+#include "pcednet/detect/averages.h"
 #include "pcednet/detect/boundary.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/decide.h"
@@ -50,12 +51,18 @@ void add_core(const PointCloud& core, PointCloud& all) {
   detect::set_estimated_normals(all, detect::declares_estimated_normals(core));
 }
 
-detect::PartOfCloud part_of(const Plan& plan, std::size_t tile, const TileCloud& points) {
+/// Of `prepared`, all points that decide in the core, whose points come first unless they are
+/// averaged.
+detect::PartOfCloud part_of(const Plan& plan, std::size_t tile, std::size_t core,
+                            const PointCloud& all, const detect::PreparedCloud& prepared) {
   detect::PartOfCloud part{.pyramids = plan.pyramids, .points = plan.places, .wanted = {}};
-  part.wanted.assign(points.all.size(), 1);
-  const BoundingBox near = plan.box_of(plan.tiles[tile], plan.reach);
-  for (std::size_t i = points.core.size(); i < part.wanted.size(); ++i) {
-    part.wanted[i] = near.holds(points.all.positions[i]) ? 1 : 0;
+  const double averaging = detect::kAveragingReach * plan.normals.averaging.deviation;
+  const BoundingBox near = plan.box_of(plan.tiles[tile], plan.reach + averaging);
+  const std::span<const Vec3> positions =
+      prepared.is_averaged() ? prepared.positions : std::span<const Vec3>(all.positions);
+  part.wanted.assign(positions.size(), 1);
+  for (std::size_t i = prepared.is_averaged() ? 0 : core; i < positions.size(); ++i) {
+    part.wanted[i] = near.holds(positions[i]) ? 1 : 0;
   }
   return part;
 }
@@ -100,14 +107,15 @@ TileFindings classify_tile(const Plan& plan, std::size_t tile, const detect::Edg
   const bool own_classes = model && has_own_classes(model->table);
   TileFindings findings{.found = detect::nothing_found(points.core.size(), own_classes)};
   if (std::any_of(points.all.positions.begin(), points.all.positions.end(), has_place)) {
-    const detect::PartOfCloud part = part_of(plan, tile, points);
     auto prepared = detect::prepare(points.all, {.decided = plan.normals}, progress);
+    const auto part = part_of(plan, tile, points.core.size(), points.all, prepared);
     prepared.part = &part;
     if (model) findings.found = detect::classify(prepared, *model, progress);
     if (model && plan.model.boundary && has_edges(model->table)) {
       detect::mark_boundary(prepared, findings.found, progress);
     }
-    findings.made = std::move(prepared.made);
+    if (model) findings.found = of_all_points(prepared, std::move(findings.found));
+    findings.made = of_all_points(prepared, std::move(prepared.made));
   }
   keep_first(points.core.size(), findings);
   points.all = {};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 
 #include "pcednet/core/random.h"
 #include "pcednet/detect/rounding.h"
@@ -14,24 +15,24 @@
 namespace pcednet::tiles {
 namespace {
 
-/// Reads every point once.
-void stream_points(const Plan& plan, const Progress* progress,
-                   const std::function<void(std::span<const Vec3>)>& see) {
-  Stage stage(progress, "spacing", plan.points());
-  for (const PlannedInput& input : plan.inputs) {
-    const auto use = [&](const PointCloud& part, std::size_t) {
-      see(part.positions);
-      stage.advance(part.size());
-    };
-    for_each_chunk(
-        input, [](const Chunk&) { return true; }, progress, use);
-  }
-}
-
 /// The positions as they are described.
 std::vector<Vec3> described(std::span<const Vec3> positions, const Plan& plan) {
   if (plan.normals.rounding.step > 0.0) return detect::spread(positions, plan.normals.rounding);
   return {positions.begin(), positions.end()};
+}
+
+/// The numbers of the positions in some boxes, or of all if hardly any is.
+std::vector<std::size_t> places_in(std::span<const BoundingBox> boxes,
+                                   std::span<const Vec3> positions) {
+  constexpr std::size_t kFewInside = 1000;
+  std::vector<std::size_t> inside(positions.size());
+  std::iota(inside.begin(), inside.end(), std::size_t{0});
+  const std::vector<std::size_t> all = inside;
+  std::erase_if(inside, [&](std::size_t place) {
+    return std::none_of(boxes.begin(), boxes.end(),
+                        [&](const BoundingBox& box) { return box.holds(positions[place]); });
+  });
+  return inside.size() < kFewInside ? all : inside;
 }
 
 /// Mean distances to the nearest others of positions at equal steps of the sample.
@@ -45,8 +46,10 @@ std::vector<double> spacings_from(const SampledPoints& sample, const Plan& plan,
   };
   const std::size_t points = sample.positions.size();
   if (sample.is_all) {
-    return gls::sampled_spacings(
-        points, [&](std::size_t place) { return gls::mean_distance(nearest(place)); });
+    const std::vector<std::size_t> places = places_in(sample.inner, sample.positions);
+    return gls::sampled_spacings(places.size(), [&](std::size_t place) {
+      return gls::mean_distance(nearest(places[place]));
+    });
   }
   const auto reach = gls::sampled_spacings(
       points, [&](std::size_t place) { return std::sqrt(nearest(place).back()) * (1.0 + 1e-12); });
@@ -55,7 +58,7 @@ std::vector<double> spacings_from(const SampledPoints& sample, const Plan& plan,
     places.push_back(sample.positions[i * points / reach.size()]);
   }
   NearestInStream stream(std::move(places), reach);
-  stream_points(plan, progress, [&](std::span<const Vec3> positions) {
+  stream_points(plan, "spacing", progress, [&](std::span<const Vec3> positions) {
     stream.add(described(positions, plan));
     counts.add(positions);
   });
@@ -67,6 +70,19 @@ std::vector<double> spacings_from(const SampledPoints& sample, const Plan& plan,
 }
 
 }  // namespace
+
+void stream_points(const Plan& plan, const char* stage, const Progress* progress,
+                   const std::function<void(std::span<const Vec3>)>& see) {
+  Stage steps(progress, stage, plan.points());
+  for (const PlannedInput& input : plan.inputs) {
+    const auto use = [&](const PointCloud& part, std::size_t) {
+      see(part.positions);
+      steps.advance(part.size());
+    };
+    for_each_chunk(
+        input, [](const Chunk&) { return true; }, progress, use);
+  }
+}
 
 void Sample::add(std::span<const Vec3> positions) {
   for (const Vec3& position : positions) {
@@ -98,16 +114,13 @@ std::vector<Vec3> Sample::take() {
 
 Spacing find_spacing(const SampledPoints& sample, const Plan& plan, const gls::ScaleRange& given,
                      CellCounts& counts, const Progress* progress) {
-  if (sample.is_all) {
-    counts.add(sample.positions);
-    counts.add_without_place(plan.points() - sample.positions.size());
-  }
   std::vector<Vec3> positions = described(sample.positions, plan);
   if (plan.normals.rounding.step > 0.0) {
     positions = spatial::in_order(positions, spatial::curve_order(positions));
   }
   positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
-  std::vector<double> spacings = spacings_from({positions, sample.is_all}, plan, counts, progress);
+  std::vector<double> spacings =
+      spacings_from({positions, sample.is_all, sample.inner}, plan, counts, progress);
   if (!sample.is_all) positions.insert(positions.end(), {plan.box.min, plan.box.max});
   Spacing spacing{.range = gls::scale_range(positions, given, [&] { return spacings; })};
   std::vector<double> sorted = spacings;

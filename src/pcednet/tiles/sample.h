@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -36,8 +37,9 @@ class Sample {
 };
 
 struct SampledPoints {
-  std::span<const Vec3> positions;  ///< in curve order
-  bool is_all = false;              ///< there are no others
+  std::span<const Vec3> positions;          ///< in curve order
+  bool is_all = false;                      ///< there are no others near them
+  std::span<const BoundingBox> inner = {};  ///< unless empty, the spacing is measured in these
 };
 
 /// The spacing of the points of a cloud.
@@ -48,11 +50,15 @@ struct Spacing {
   double wide = 0.0;  ///< exceeded by one in a thousand
 };
 
+/// Reads every point once.
+void stream_points(const Plan& plan, const char* stage, const Progress* progress,
+                   const std::function<void(std::span<const Vec3>)>& see);
+
 /// The spacings and range of scales, the latter as gls::scale_range() computes it for a cloud in
 /// memory: from 16384 positions at equal steps along the curve, with the mean distances to their 10
-/// nearest others in the whole cloud. Where the sample is not the whole cloud, the positions are
-/// taken from it, and all inputs are read once for the distances. Every position goes into
-/// `counts`. Rounded positions are spread before, as the plan decides.
+/// nearest others in the whole cloud. Where the sample is not all there is near it, the positions
+/// are taken from it, and all inputs are read once for the distances; every position goes into
+/// `counts` then. Rounded positions are spread before, as the plan decides.
 Spacing find_spacing(const SampledPoints& sample, const Plan& plan, const gls::ScaleRange& given,
                      CellCounts& counts, const Progress* progress);
 
