@@ -13,6 +13,7 @@
 #include "pcednet/detect/thinned_cloud.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/morton.h"
+#include "pcednet/tiles/inputs.h"
 
 namespace pcednet::app {
 namespace {
@@ -133,14 +134,17 @@ PointsNearEdges read_near_edges(const TiledCloud& cloud, std::uint64_t limit,
                                 const Progress& progress) {
   const Cubes cubes = cubes_near_edges(cloud, progress);
   PointsNearEdges near;
+  near.cloud.scanners = cloud.plan().scanners;
   Stage stage(&progress, "points near edges", cloud.plan().points());
   cloud.each([&](const PointCloud& part, const tiles::TileFindings& findings) {
     if (near.cloud.foreign_elements.empty()) near.cloud.foreign_elements = part.foreign_elements;
+    std::vector<std::uint32_t> chosen;
     const std::vector<Vec3>& made = findings.made;
     const std::vector<Vec3>& normals = made.empty() ? part.normals : made;
-    for (std::size_t i = 0; i < part.size(); ++i) {
+    for (std::uint32_t i = 0; i < part.size(); ++i) {
       const Vec3& position = part.positions[i];
       if (!tiles::has_place(position) || !cubes.hold(position)) continue;
+      chosen.push_back(i);
       near.cloud.positions.push_back(position);
       near.cloud.normals.push_back(normals.empty() ? Vec3::Zero() : normals[i]);
       near.classes.push_back(findings.found.classes[i]);
@@ -148,6 +152,7 @@ PointsNearEdges read_near_edges(const TiledCloud& cloud, std::uint64_t limit,
       near.p_smooth.push_back(findings.found.p_smooth[i]);
       near.partial.push_back(cubes.are_partial_at(position) ? 1 : 0);
     }
+    tiles::append_scans(part, chosen, near.cloud);
     check_memory(near.classes.size(), limit);
     stage.advance(part.size());
     return true;

@@ -11,6 +11,7 @@
 #include "free_memory.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/parts.h"
+#include "pcednet/io/scanners.h"
 #include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/layout.h"
 #include "pcednet/tiles/make_plan.h"
@@ -73,6 +74,7 @@ tiles::Plan plan_for(const TiledRequest& request, const detect::EdgeModel& model
                         .model = planned_model(request.model),
                         .memory = request.memory,
                         .keep_orientation = request.preparation.keep_orientation,
+                        .viewpoint = request.viewpoint,
                         .sort = {.folder = sorted, .if_needed = true, .numbered = true}},
                        model, &progress);
   check_scales(request.input, plan.box, model.descriptor);
@@ -151,6 +153,7 @@ void TiledCloud::each(const Visit& visit) const {
   std::size_t begin = 0;
   for (std::size_t p = 0; p < reader_->parts(); ++p) {
     PointCloud part = tiles::read_finished(*reader_, p);
+    if (request_.viewpoint) io::set_scanners(plan_.scanners, part);
     tiles::TileFindings findings;
     if (labels_) findings = labels_->get(begin, begin + part.size());
     if (request_.given) findings.found = request_.given(part);

@@ -57,7 +57,8 @@ struct TiledRequest {
   std::filesystem::path output;  ///< temporary files are beside it
   ModelArguments model;
   detect::PrepareOptions preparation;
-  std::uint64_t memory = 0;  ///< for a tile
+  std::optional<Vec3> viewpoint = {};  ///< of the scanner that saw all points
+  std::uint64_t memory = 0;            ///< for a tile
   /// Existing labels of a part's points; empty: the model finds them.
   std::function<detect::Classification(const PointCloud& part)> given = {};
 };

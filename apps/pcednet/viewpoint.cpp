@@ -4,10 +4,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common.h"
 #include "number_options.h"
-#include "pcednet/cloud/attribute.h"
 #include "pcednet/core/error.h"
+#include "pcednet/io/scanners.h"
 
 namespace pcednet::app {
 
@@ -23,20 +22,16 @@ void add_viewpoint_option(CLI::App& command, std::vector<double>& viewpoint) {
 void set_viewpoint(const std::filesystem::path& file, const std::vector<double>& viewpoint,
                    PointCloud& cloud) {
   if (viewpoint.empty()) return;
-  if (cloud.scanners.size() > 1 || find_attribute(cloud, "scan")) {
+  if (io::has_several_scans(cloud)) {
     throw Error(ErrorKind::kUsage,
                 fmt::format("{}: is of several scans, --viewpoint is for one", file.string()));
   }
-  cloud.scanners = {Vec3(viewpoint[0], viewpoint[1], viewpoint[2])};
-  std::erase_if(cloud.comments, [](const auto& one) { return one.starts_with("scanner "); });
-  cloud.comments.push_back(
-      fmt::format("scanner 0: {} {} {}", viewpoint[0], viewpoint[1], viewpoint[2]));
+  io::set_scanners({*place_in(viewpoint)}, cloud);
 }
 
-void warn_of_viewpoint_in_tiles(const std::filesystem::path& file,
-                                const std::vector<double>& viewpoint) {
-  if (viewpoint.empty()) return;
-  warn(fmt::format("{}: --viewpoint is not used for clouds that are read in tiles", file.string()));
+std::optional<Vec3> place_in(const std::vector<double>& viewpoint) {
+  if (viewpoint.empty()) return std::nullopt;
+  return Vec3(viewpoint.at(0), viewpoint.at(1), viewpoint.at(2));
 }
 
 }  // namespace pcednet::app

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "pcednet/cloud/point_cloud.h"
@@ -19,8 +20,7 @@ void add_viewpoint_option(CLI::App& command, std::vector<double>& viewpoint);
 void set_viewpoint(const std::filesystem::path& file, const std::vector<double>& viewpoint,
                    PointCloud& cloud);
 
-/// Warns that a cloud read in tiles has none.
-void warn_of_viewpoint_in_tiles(const std::filesystem::path& file,
-                                const std::vector<double>& viewpoint);
+/// Its three numbers, if given.
+std::optional<Vec3> place_in(const std::vector<double>& viewpoint);
 
 }  // namespace pcednet::app

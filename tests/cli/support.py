@@ -48,7 +48,7 @@ def sheet(points=3000, seed=1):
     return p, np.tile([0.0, 0.0, 1.0], (points, 1)), rim
 
 
-def write_ply(path, positions, normals=None, labels=None, position_type="float", **more):
+def write_ply(path, positions, normals=None, labels=None, position_type="float", comments=(), **more):
     """A binary PLY as any program might write it; `more` are attributes in float."""
     fields = [(a, "<f8" if position_type == "double" else "<f4") for a in "xyz"]
     lines = [f"property {position_type} {a}" for a in "xyz"]
@@ -69,8 +69,8 @@ def write_ply(path, positions, normals=None, labels=None, position_type="float",
         rows["label"] = labels
     for name, values in more.items():
         rows[name] = values
-    header = "\n".join(["ply", "format binary_little_endian 1.0", f"element vertex {len(rows)}",
-                        *lines, "end_header", ""])
+    header = "\n".join(["ply", "format binary_little_endian 1.0", *(f"comment {text}" for text in comments),
+                        f"element vertex {len(rows)}", *lines, "end_header", ""])
     pathlib.Path(path).write_bytes(header.encode() + rows.tobytes())
 
 

@@ -1,10 +1,11 @@
-"""Where the scanner stood: --viewpoint of classify and lines."""
+"""Where the scanner stood: --viewpoint of classify, lines and tiles, and the scanners of a file."""
 import re
 import unittest
 
 import numpy as np
 
 from support import CliTest, run, write_ply
+from tiles_support import sorted_rows
 
 PLACE = np.array([20.0, 10.0, 1.7])
 
@@ -40,10 +41,61 @@ class Viewpoint(CliTest):
         self.assertIn(b"comment scanner 0: 20 10 1.7\n", (self.folder / "scan_edges.ply").read_bytes())
         self.assertGreater(self.length("scan.ply"), self.length("scan_edges.ply") + 12)
 
+    def check_tiles(self, cloud, *options):
+        """The labels, normals and scanners of the whole cloud in tiles and in one file read in tiles."""
+        folder = self.folder
+        run("classify", folder / cloud, "-o", folder / "whole.ply", *options, "--overwrite")
+        done = run("tiles", "plan", folder / cloud, "-o", folder / "p.json", "--tile", 5, *options, "--overwrite")
+        self.assertIn("turned towards the scanner", done.stderr)
+        run("tiles", "run", folder / "p.json", "--overwrite")
+        run("tiles", "join", folder / "p.json", "-o", folder / "joined.ply", "--overwrite")
+        run("classify", folder / cloud, "-o", folder / "large.ply", *options, "--max-memory", "101M", "--overwrite")
+        whole = sorted_rows(folder / "whole.ply")
+        for name in "joined.ply", "large.ply":
+            rows = sorted_rows(folder / name)
+            self.assertGreater(np.mean(rows["scalar_edge_class"] == whole["scalar_edge_class"]), 0.9999)
+            self.assertGreater(np.mean(abs(rows["nx"] - whole["nx"]) < 1e-3), 0.9999)
+            self.assertEqual(re.findall(rb"comment scanner.*", (folder / name).read_bytes()),
+                             re.findall(rb"comment scanner.*", (folder / "whole.ply").read_bytes()))
+
+    def test_tiles_take_it_and_keep_it(self):
+        told = ("--viewpoint", *PLACE)
+        self.check_tiles("scan.ply", *told)
+        shadows = self.length("scan.ply") - 12
+        for file, options in (("joined.ply", ()), ("large.ply", ("--max-memory", "101M")),
+                              ("scan.ply", (*told, "--max-memory", "101M"))):
+            self.assertGreater(shadows, self.length(file, *options))
+
+    def test_tiles_take_the_scanners_of_the_file(self):
+        # The panel from the other side, too: its faces cannot be told by their neighbours.
+        p = panel_scan(0.012)
+        back = (2 * PLACE + [16.05, 0, 0]) - p * [1, 1, -1] - [0, 0, 2 * PLACE[2]]
+        comments = ["scanner 0: 20 10 1.7", "scanner 1: 36.05 10 1.7"]
+        write_ply(self.folder / "two.ply", np.vstack([p, back]), position_type="double", comments=comments,
+                  scan=np.repeat([0, 1], len(p)))
+        self.check_tiles("two.ply")
+
+    def test_scanners_that_differ_between_inputs_are_not_kept(self):
+        for name, x in ("a.ply", 20), ("b.ply", 30):
+            write_ply(self.folder / name, panel_scan(0.03) + [x - 20, 0, 0], position_type="double",
+                      comments=[f"scanner 0: {x} 10 1.7"])
+        inputs = (self.folder / "a.ply", self.folder / "b.ply")
+        plan, tile = self.folder / "p.json", self.folder / "p_tiles" / "0.ply"
+        done = run("tiles", "plan", *inputs, "-o", plan)
+        self.assertIn("differ in where their scanners stood", done.stderr)
+        run("tiles", "run", plan)
+        self.assertNotIn(b"comment scanner", tile.read_bytes())
+        run("tiles", "plan", *inputs, "-o", plan, "--viewpoint", 1, 2, 3, "--overwrite")
+        run("tiles", "run", plan)
+        self.assertIn(b"comment scanner 0: 1 2 3\n", tile.read_bytes())
+
     def test_is_for_one_scan(self):
         write_ply(self.folder / "two.ply", panel_scan(0.05), scan=np.zeros(180))
         done = run("classify", self.folder / "two.ply", "--viewpoint", "0", "0", "0", expect=2)
         self.assertIn("two.ply: is of several scans, --viewpoint is for one", done.stderr)
+        done = run("tiles", "plan", self.folder / "two.ply", "-o", self.folder / "p.json", "--viewpoint", 0, 0, 0,
+                   expect=2)
+        self.assertIn("two.ply: is of several scans", done.stderr)
         run("classify", self.folder / "scan.ply", "--viewpoint", "0", "nan", "0", expect=2)
         run("classify", self.folder / "scan.ply", "--method", "ca", "--viewpoint", "0", "0", "0", expect=2)
 

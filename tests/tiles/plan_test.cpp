@@ -28,6 +28,7 @@ class PlanFile : public testing::Test, protected test::OwnFolder {
     plan.places = 50000;
     plan.box = {{0, 1, 2}, {3, 4, 0.1 + 0.2}};
     plan.model = {"general", "/models/general.safetensors", "abc", false, true, false};
+    plan.scanners = {{1, 2, 3.1}, Vec3::Constant(NAN)};
     plan.s_min = 0.1, plan.s_max = 1.0 / 3.0;
     plan.normals = {
         true, 48, 12, true, true, true, {0.01, {-1.0, 2.0, 0.5}, 0.04}, {0.02, {1.0, 2.0, 3.5}}};
@@ -60,6 +61,9 @@ TEST_F(PlanFile, ComesBackAsItWas) {
   EXPECT_EQ(back.places, 50000u);
   EXPECT_EQ(back.las_steps, plan.las_steps);
   EXPECT_EQ(back.box.max, plan.box.max);
+  ASSERT_EQ(back.scanners.size(), 2u);
+  EXPECT_EQ(back.scanners[0], plan.scanners[0]);
+  EXPECT_FALSE(back.scanners[1].allFinite());
   EXPECT_EQ(back.model.path, plan.model.path);
   EXPECT_FALSE(back.model.context || back.model.exact);
   EXPECT_TRUE(back.model.boundary);

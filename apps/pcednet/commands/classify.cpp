@@ -149,12 +149,12 @@ void classify_large_file(const Job& job, const ClassifyArguments& arguments,
                          const TilesNeeded& needed, const detect::EdgeModel& model,
                          const Common& common) {
   say(needed.reason + ": classified in tiles");
-  warn_of_viewpoint_in_tiles(job.input, arguments.viewpoint);
   StageClock clock(console_progress(common));
   const TiledCloud cloud({.input = job.input,
                           .output = job.output,
                           .model = arguments.model,
                           .preparation = arguments.preparation,
+                          .viewpoint = place_in(arguments.viewpoint),
                           .memory = needed.memory},
                          model, clock.progress());
   const detect::Classification& result = cloud.found();

@@ -151,11 +151,11 @@ bool has_labels(const LinesArguments& arguments, const Progress& progress) {
 /// The same for a cloud larger than memory: its points near edges.
 void read_labelled_in_tiles(const LinesArguments& arguments, const TilesNeeded& needed,
                             StageClock& clock, LabelledCloud& labelled) {
-  warn_of_viewpoint_in_tiles(arguments.input, arguments.viewpoint);
   TiledRequest request{.input = arguments.input,
                        .output = arguments.outputs.front(),
                        .model = arguments.model,
                        .preparation = arguments.preparation,
+                       .viewpoint = place_in(arguments.viewpoint),
                        .memory = needed.memory};
   if (!arguments.classify && has_labels(arguments, clock.progress())) {
     request.given = [&](const PointCloud& part) { return labels_of_part(arguments, part); };

@@ -20,6 +20,7 @@
 #include "prepare.h"
 #include "result_plan.h"
 #include "shell_word.h"
+#include "viewpoint.h"
 
 namespace pcednet::app {
 namespace {
@@ -32,6 +33,7 @@ struct PlanArguments {
   double tile_length = 0.0;
   ModelArguments model{.name = kDefaultModel};
   detect::PrepareOptions preparation;
+  std::vector<double> viewpoint;
 };
 
 /// The default folder of the tiles: beside the plan.
@@ -81,6 +83,7 @@ void plan_tiles(const PlanArguments& arguments, const Common& common) {
                              .tile_length = arguments.tile_length,
                              .memory = byte_size("--max-memory", arguments.memory),
                              .keep_orientation = arguments.preparation.keep_orientation,
+                             .viewpoint = place_in(arguments.viewpoint),
                              .sort = {.folder = arguments.sorted, .overwrite = common.overwrite()},
                              .sort_name = "--sort FOLDER"};
   check_names(arguments.plan, request);
@@ -147,6 +150,7 @@ void add_tiles_plan(CLI::App& tiles, Common& common) {
       "little beyond its buffer of these");
   add_model_options(*command, arguments->model);
   add_prepare_options(*command, arguments->preparation);
+  add_viewpoint_option(*command, arguments->viewpoint);
   command->callback([arguments, &common] { plan_tiles(*arguments, common); });
 }
 

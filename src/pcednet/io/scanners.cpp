@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "pcednet/io/text_scan.h"
 
@@ -30,6 +32,27 @@ std::vector<Vec3> scanners_of_comments(const std::vector<std::string>& comments)
     scanners[*index] = {*x, *y, *z};
   }
   return scanners;
+}
+
+bool are_same(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Vec3& one, const Vec3& other) {
+    return one == other || !(one.allFinite() || other.allFinite());
+  });
+}
+
+void set_scanners(std::vector<Vec3> scanners, PointCloud& cloud) {
+  std::erase_if(cloud.comments, [](const auto& one) { return one.starts_with("scanner "); });
+  for (std::size_t i = 0; i < scanners.size(); ++i) {
+    const Vec3& place = scanners[i];
+    if (!place.allFinite()) continue;
+    cloud.comments.push_back(
+        fmt::format("scanner {}: {} {} {}", i, place.x(), place.y(), place.z()));
+  }
+  cloud.scanners = std::move(scanners);
+}
+
+bool has_several_scans(const PointCloud& cloud) {
+  return cloud.scanners.size() > 1 || find_attribute(cloud, "scan");
 }
 
 }  // namespace pcednet::io

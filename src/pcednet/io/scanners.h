@@ -15,4 +15,13 @@ void add_scanner(const Vec3& position, PointCloud& cloud);
 /// The positions in such comments. Unnamed ones are NaN.
 std::vector<Vec3> scanners_of_comments(const std::vector<std::string>& comments);
 
+/// Whether the scanners stood at the same places; unknown ones are alike.
+bool are_same(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
+
+/// Gives the cloud these scanners, and their comments in place of others.
+void set_scanners(std::vector<Vec3> scanners, PointCloud& cloud);
+
+/// Whether the points are of several scans, so that no scanner saw all.
+bool has_several_scans(const PointCloud& cloud);
+
 }  // namespace pcednet::io

@@ -16,6 +16,7 @@
 #include "pcednet/detect/prepare.h"
 #include "pcednet/io/las/file.h"
 #include "pcednet/io/las/las.h"
+#include "pcednet/io/scanners.h"
 
 namespace pcednet::tiles {
 namespace {
@@ -222,11 +223,10 @@ void note_lost_records(const IndexedInput& first, std::vector<std::string> lost,
 void check_agreement(const std::vector<IndexedInput>& inputs, Plan& plan) {
   const IndexedInput& first = inputs.front();
   const io::LasFile las = io::attached_las_file(first.outline);
-  bool scanners = false, besides = false;
+  bool besides = false;
   std::vector<std::string> lost;
   for (const IndexedInput& input : inputs) {
     const PointCloud& outline = input.outline;
-    scanners = scanners || !outline.scanners.empty();
     besides = besides || !std::all_of(outline.foreign_elements.begin(),
                                       outline.foreign_elements.end(), io::is_las_element);
     if (&input == &first) continue;
@@ -239,12 +239,30 @@ void check_agreement(const std::vector<IndexedInput>& inputs, Plan& plan) {
     check_las(first, input, las, other);
     add_lost(las, other, lost);
   }
-  if (scanners && inputs.size() > 1) {
-    plan.notes.emplace_back(
-        "with several inputs, scanner positions are not used to orient normals");
-  }
   if (besides) plan.notes.emplace_back("other elements than points, such as faces, are left out");
   note_lost_records(first, std::move(lost), plan);
+}
+
+void choose_scanners(const std::vector<IndexedInput>& inputs, const std::optional<Vec3>& viewpoint,
+                     Plan& plan) {
+  const std::vector<Vec3>& first = inputs.front().outline.scanners;
+  bool differ = false;
+  for (const IndexedInput& input : inputs) {
+    if (viewpoint && io::has_several_scans(input.outline)) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("{}: is of several scans, and one scanner saw all points",
+                              input.input.path.string()));
+    }
+    differ = differ || !io::are_same(input.outline.scanners, first);
+  }
+  if (viewpoint) {
+    plan.scanners = {*viewpoint};
+  } else if (!differ) {
+    plan.scanners = first;
+  } else {
+    plan.notes.emplace_back(
+        "the inputs differ in where their scanners stood: none is used, nor kept");
+  }
 }
 
 }  // namespace pcednet::tiles

@@ -153,7 +153,7 @@ DenseSample read_dense_sample(const SampledPoints& sample, const Plan& plan,
   };
   PointCloud& dense = all.cloud;
   const PointCloud outline = outline_of(plan);
-  if (plan.inputs.size() == 1) dense.scanners = outline.scanners;
+  dense.scanners = plan.scanners;
   dense.position_type = outline.position_type;
   detect::set_estimated_normals(dense, detect::declares_estimated_normals(outline));
   Stage stage(progress, "dense sample", plan.inputs.size());

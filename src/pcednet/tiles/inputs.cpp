@@ -14,6 +14,7 @@
 #include "pcednet/formats/format.h"
 #include "pcednet/io/las/file.h"
 #include "pcednet/io/las/las.h"
+#include "pcednet/io/scanners.h"
 
 namespace pcednet::tiles {
 namespace {
@@ -102,16 +103,20 @@ void append_rows(const std::vector<T>& from, std::span<const std::uint32_t> chos
   for (const std::uint32_t i : chosen) to.push_back(from[i]);
 }
 
+void append_rows(const Attribute& from, std::span<const std::uint32_t> chosen, Attribute& to) {
+  const std::size_t stride = from.stride();
+  std::size_t end = to.bytes.size();
+  to.bytes.resize(end + chosen.size() * stride);
+  for (const std::uint32_t i : chosen) {
+    std::copy_n(from.bytes.data() + i * stride, stride, to.bytes.data() + end);
+    end += stride;
+  }
+}
+
 void append_rows(const std::vector<Attribute>& from, std::span<const std::uint32_t> chosen,
                  std::vector<Attribute>& to) {
   for (std::size_t a = 0; a < std::min(from.size(), to.size()); ++a) {
-    const std::size_t stride = from[a].stride();
-    std::size_t end = to[a].bytes.size();
-    to[a].bytes.resize(end + chosen.size() * stride);
-    for (const std::uint32_t i : chosen) {
-      std::copy_n(from[a].bytes.data() + i * stride, stride, to[a].bytes.data() + end);
-      end += stride;
-    }
+    append_rows(from[a], chosen, to[a]);
   }
 }
 
@@ -237,6 +242,7 @@ IndexedInput index_input(const fs::path& path, const Progress* progress,
 PointCloud outline_of(const Plan& plan) {
   const PlannedInput& input = plan.inputs.front();
   PointCloud outline = without_points(read_chunk(*open_planned(input), input, 0));
+  if (!io::are_same(plan.scanners, outline.scanners)) io::set_scanners(plan.scanners, outline);
   std::erase_if(outline.foreign_elements,
                 [](const ForeignElement& element) { return !io::is_las_element(element); });
   if (plan.las_steps.size() != 6) return outline;
@@ -252,13 +258,22 @@ PointCloud outline_of(const Plan& plan) {
   return outline;
 }
 
+void append_scans(const PointCloud& from, std::span<const std::uint32_t> chosen, PointCloud& to) {
+  const Attribute* scans = find_attribute(from, "scan");
+  if (!scans) return;
+  if (to.attributes.empty()) to.attributes = {{scans->name, scans->type, scans->components, {}}};
+  append_rows(*scans, chosen, to.attributes.front());
+}
+
 void append_surface(const PointCloud& from, std::span<const std::uint32_t> chosen, PointCloud& to) {
   append_rows(from.positions, chosen, to.positions);
   append_rows(from.normals, chosen, to.normals);
+  append_scans(from, chosen, to);
 }
 
 void append_points(const PointCloud& from, std::span<const std::uint32_t> chosen, PointCloud& to) {
-  append_surface(from, chosen, to);
+  append_rows(from.positions, chosen, to.positions);
+  append_rows(from.normals, chosen, to.normals);
   append_rows(from.colours, chosen, to.colours);
   append_rows(from.labels, chosen, to.labels);
   append_rows(from.stored_normals, chosen, to.stored_normals);

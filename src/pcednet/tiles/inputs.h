@@ -56,7 +56,10 @@ PointCloud outline_of(const Plan& plan);
 /// Chunk `chunk` of a file that is not an input of the plan, finished.
 PointCloud read_finished(const io::PartReader& reader, std::size_t chunk);
 
-/// Appends positions and normals, if there are any, of the points numbered `chosen`.
+/// Appends the numbers of the scans, if there are any, of the points numbered `chosen`.
+void append_scans(const PointCloud& from, std::span<const std::uint32_t> chosen, PointCloud& to);
+
+/// The same for positions, normals and scans.
 void append_surface(const PointCloud& from, std::span<const std::uint32_t> chosen, PointCloud& to);
 
 /// Appends the points numbered `chosen`; columns that only `from` has are left out unless `to` has

@@ -257,6 +257,7 @@ Sample index_inputs(const PlanRequest& request, Plan& plan, const Progress* prog
                             detect::kSuspectCoordinate));
   }
   check_agreement(indexed, plan);
+  choose_scanners(indexed, request.viewpoint, plan);
   choose_las_steps(indexed, plan);
   for (IndexedInput& input : indexed) plan.inputs.push_back(std::move(input.input));
   note_copies(plan);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct PlanRequest {
   double tile_length = 0.0;      ///< 0: the largest that `memory` allows
   std::uint64_t memory = std::uint64_t{2} << 30;  ///< bytes allowed for one tile
   bool keep_orientation = false;
+  std::optional<Vec3> viewpoint = {};  ///< of the scanner that saw all points
   SortRequest sort = {};
   std::string sort_name = {};  ///< what a user calls `sort`, for messages; empty: not offered
 };

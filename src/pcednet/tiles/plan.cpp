@@ -54,6 +54,20 @@ Vec3 vec3_of(const Json& j) {
   return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
 }
 
+Json json_of(const std::vector<Vec3>& places) {
+  Json list = Json::array();
+  for (const Vec3& place : places) list.push_back(place.allFinite() ? json_of(place) : Json());
+  return list;
+}
+
+std::vector<Vec3> places_in(const Json& j) {
+  std::vector<Vec3> places;
+  for (const Json& place : j) {
+    places.push_back(place.is_null() ? Vec3(Vec3::Constant(NAN)) : vec3_of(place));
+  }
+  return places;
+}
+
 Json json_of(const BoundingBox& box) {
   if (box.empty()) return nullptr;
   return {box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()};
@@ -188,6 +202,7 @@ std::string text_of(const Plan& plan, const Paths& paths) {
       {"places", to_text(Json(plan.places))},
       {"box", to_text(json_of(plan.box))},
       {"las_steps", to_text(Json(plan.las_steps))},
+      {"scanners", to_text(json_of(plan.scanners))},
       {"model", to_text(json_of(plan.model, paths))},
       {"scales", to_text(Json{{"s_min", plan.s_min}, {"s_max", plan.s_max}})},
       {"normals", to_text(json_of(plan.normals))},
@@ -218,6 +233,7 @@ Plan plan_of(const Json& j, const Paths& paths, std::string& member) {
   plan.places = at("places");
   plan.box = box_in(at("box"));
   plan.las_steps = at("las_steps").get<std::vector<double>>();
+  plan.scanners = places_in(at("scanners"));
   plan.model = model_of(at("model"), paths);
   plan.s_min = at("scales").at("s_min");
   plan.s_max = at("scales").at("s_max");

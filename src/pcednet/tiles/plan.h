@@ -57,6 +57,8 @@ struct Plan {
   /// Scale and offset of x, y and z in the tiles, where all inputs are LAS or LAZ; otherwise empty.
   std::vector<double> las_steps = {};
   BoundingBox box = {};  ///< of all points with a place
+  /// As in PointCloud: that of the request, or those that all inputs tell.
+  std::vector<Vec3> scanners = {};
   /// Distinct places of points; of more than 2,000,000 points, all those with a place. The maximum
   /// of few points that count as a piece of a larger cloud.
   std::size_t places = 0;

@@ -48,6 +48,12 @@ void add_core(const PointCloud& core, PointCloud& all) {
   all.positions.insert(all.positions.begin(), places.begin(), places.end());
   all.normals.insert(all.normals.begin(), core.normals.begin(), core.normals.end());
   all.scanners = core.scanners;
+  if (const Attribute* scans = find_attribute(core, "scan")) {
+    if (all.attributes.empty())
+      all.attributes = {{scans->name, scans->type, scans->components, {}}};
+    std::vector<std::byte>& bytes = all.attributes.front().bytes;
+    bytes.insert(bytes.begin(), scans->bytes.begin(), scans->bytes.end());
+  }
   detect::set_estimated_normals(all, detect::declares_estimated_normals(core));
 }
 
@@ -139,7 +145,6 @@ TileCloud read_tile(const Plan& plan, std::size_t tile, const Progress* progress
     before += input.points();
   }
   take_numbers(points);
-  if (plan.inputs.size() > 1) points.core.scanners.clear();
   add_core(points.core, points.all);
   if (points.core.size() == plan.tiles[tile].points) return points;
   throw Error(ErrorKind::kFailure,
