@@ -159,6 +159,12 @@ class Study(CliTest):
         for result in self.read("classes")["results"]:
             self.assertEqual([c["name"] for c in result["clouds"]], ["cube3", "cube4"])
 
+    def test_refuses_to_score_nothing(self):
+        said = self.study("classes", "--test", "a=train", expect=4).stderr
+        self.assertIn("nothing to score", said)
+        self.assertNotIn("train pcednet", said)
+        self.assertEqual(list(self.folder.glob("out/*.json")), [])
+
     def test_compares_models_and_predictions_of_others(self):
         folder = self.folder / "others" / "a"
         folder.mkdir(parents=True)

@@ -206,6 +206,13 @@ TEST_F(StudyRun, DoesNotScoreCloudsThatWereLearntFrom) {
   EXPECT_NE(study.notes[0].find("again"), std::string::npos);
 }
 
+TEST_F(StudyRun, RefusesToScoreNothing) {
+  data_.tests = {data_.training};
+  EXPECT_ERROR(ErrorKind::kInsufficient, run("classes", "cache"));
+  data_.tests = {data_.training, data_.tests.front(), set_of("b", {4})};
+  EXPECT_FALSE(run("classes", "cache").results.empty());
+}
+
 TEST_F(StudyRun, LeavesOutCloudsThatCannotBeDescribed) {
   CloudSet set{.name = "few", .clouds = {data_.tests[0]->clouds[0]}};
   PointCloud one_place = cube(12, 3);

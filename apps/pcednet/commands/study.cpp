@@ -282,6 +282,10 @@ void run_studies(const StudyArguments& arguments, const Common& common) {
   for (const study::Experiment& experiment : experiments) {
     const auto result = study::run(experiment, data, cache, run, &progress);
     for (const std::string& note : result.notes) warn(note);
+    if (result.results.empty()) {
+      throw Error(ErrorKind::kInsufficient,
+                  fmt::format("{}: no cloud could be scored, nothing is written", experiment.name));
+    }
     study::write_study(arguments.folder, result, file, common.overwrite());
     std::cout << study::to_table(result) << std::flush;
     say(fmt::format(

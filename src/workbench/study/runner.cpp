@@ -81,6 +81,7 @@ class Runner {
                        std::uint64_t seed) const;
   std::vector<TrainingTask> plan_networks();
   void train_networks();
+  void check_scores_something() const;
   bool learnt_from(const Classifier& classifier, const StudyCloud& cloud) const;
   std::string key_of(const Classifier& classifier, const Variant& variant,
                      const StudyCloud& cloud) const;
@@ -163,8 +164,26 @@ std::vector<TrainingTask> Runner::plan_networks() {
   return pending;
 }
 
+/// Throws before the training if nothing can be scored after it.
+void Runner::check_scores_something() const {
+  for (std::size_t v = 0; v < variants().size(); ++v) {
+    if (classifiers_[v].empty()) return;  // another method, which does not learn
+    for (const auto& set : tests_of(variants()[v])) {
+      for (const Classifier& classifier : classifiers_[v]) {
+        const auto is_new = [&](const StudyCloud& c) { return !learnt_from(classifier, c); };
+        if (std::any_of(set->clouds.begin(), set->clouds.end(), is_new)) return;
+      }
+    }
+  }
+  throw Error(ErrorKind::kInsufficient,
+              fmt::format("{}: nothing to score: the networks learn from every cloud that they are "
+                          "tested on",
+                          study_.experiment.name));
+}
+
 void Runner::train_networks() {
   std::vector<TrainingTask> pending = plan_networks();
+  check_scores_something();
   // Tasks that learn from the same descriptions follow each other.
   std::stable_sort(pending.begin(), pending.end(),
                    [](const auto& a, const auto& b) { return a.samples_key < b.samples_key; });

@@ -57,7 +57,8 @@ struct Study {
 /// A cloud with the positions of a training cloud is not scored with networks trained on it, and a
 /// cloud that cannot be described (thinned to nothing, say) is not scored: the notes name both. The
 /// scores depend only on data, experiment and seeds, not on the number of threads and the order of
-/// the seeds. Throws the errors of the work, including Error(kCancelled).
+/// the seeds. Throws the errors of the work, including Error(kCancelled), and Error(kInsufficient)
+/// if every test cloud is one to learn from.
 Study run(const Experiment& experiment, const StudyData& data, const Cache& cache,
           const RunOptions& options, const Progress* progress = nullptr);
 
