@@ -9,13 +9,15 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/detect/averages.h"
 #include "pcednet/detect/boundary.h"
+#include "pcednet/detect/estimates.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/io/faces.h"
 #include "prepare.h"
 
 namespace pcednet::app {
-PointCloud read_cloud(const std::filesystem::path& file) {
+PointCloud read_cloud(const std::filesystem::path& file, const Progress* progress) {
   auto loaded = read_whole(file);
+  detect::mark_estimates(loaded.cloud, progress);
   warn_all(file, loaded.warnings);
   if (const std::size_t faces = io::face_count(loaded.cloud)) {
     warn(

@@ -24,8 +24,9 @@ struct ClassifiedPoints {
 };
 ClassifiedPoints all_points(ClassifiedCloud&& classified);
 
-/// formats::read_cloud(), with its warnings on stderr, and one of faces, which nothing uses.
-PointCloud read_cloud(const std::filesystem::path& file);
+/// formats::read_cloud(), with its warnings on stderr, and one of faces, which nothing uses; of
+/// results that lost their comments, estimated normals are marked.
+PointCloud read_cloud(const std::filesystem::path& file, const Progress* progress = nullptr);
 
 /// How to classify: by `model`, then for boundary by geometry if `boundary`; without a model by the
 /// method.

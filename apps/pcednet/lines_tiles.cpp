@@ -21,6 +21,7 @@ namespace {
 /// The least sum of both edge probabilities at which find_lines() considers a point.
 constexpr float kLeastProbability = 0.1f;
 constexpr std::uint64_t kBytesPerPoint = 400;  ///< for measurements see docs/large.md
+constexpr std::uint64_t kBytesIfAveraged = 200;
 
 /// Cubes of one size, by their places in a grid that begins one cube before the cloud.
 class Cubes {
@@ -90,8 +91,9 @@ Cubes cubes_near_edges(const TiledCloud& cloud, const Progress& progress) {
   return cubes;
 }
 
-void check_memory(std::size_t points, std::uint64_t limit) {
-  if (kBytesPerPoint * points <= limit) return;
+void check_memory(std::size_t points, const detect::Averaging& averaging, std::uint64_t limit) {
+  const std::uint64_t each = averaging.deviation > 0.0 ? kBytesIfAveraged : kBytesPerPoint;
+  if (each * points <= limit) return;
   throw Error(
       ErrorKind::kFailure,
       fmt::format("more than {} points are near edges: their lines take more memory than {}. Give "
@@ -133,6 +135,7 @@ PointsNearEdges averages_of(PointsNearEdges&& points, const detect::Averaging& a
 PointsNearEdges read_near_edges(const TiledCloud& cloud, std::uint64_t limit,
                                 const Progress& progress) {
   const Cubes cubes = cubes_near_edges(cloud, progress);
+  const detect::Averaging& averaging = cloud.plan().normals.averaging;
   PointsNearEdges near;
   near.cloud.scanners = cloud.plan().scanners;
   Stage stage(&progress, "points near edges", cloud.plan().points());
@@ -153,11 +156,10 @@ PointsNearEdges read_near_edges(const TiledCloud& cloud, std::uint64_t limit,
       near.partial.push_back(cubes.are_partial_at(position) ? 1 : 0);
     }
     tiles::append_scans(part, chosen, near.cloud);
-    check_memory(near.classes.size(), limit);
+    check_memory(near.classes.size(), averaging, limit);
     stage.advance(part.size());
     return true;
   });
-  const detect::Averaging& averaging = cloud.plan().normals.averaging;
   return averaging.deviation > 0.0 ? averages_of(std::move(near), averaging, progress) : near;
 }
 

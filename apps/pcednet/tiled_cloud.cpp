@@ -153,6 +153,7 @@ void TiledCloud::each(const Visit& visit) const {
   std::size_t begin = 0;
   for (std::size_t p = 0; p < reader_->parts(); ++p) {
     PointCloud part = tiles::read_finished(*reader_, p);
+    if (plan_.estimates) detect::set_estimated_normals(part, true);
     if (request_.viewpoint) io::set_scanners(plan_.scanners, part);
     tiles::TileFindings findings;
     if (labels_) findings = labels_->get(begin, begin + part.size());

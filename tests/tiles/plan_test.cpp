@@ -28,6 +28,7 @@ class PlanFile : public testing::Test, protected test::OwnFolder {
     plan.places = 50000;
     plan.box = {{0, 1, 2}, {3, 4, 0.1 + 0.2}};
     plan.model = {"general", "/models/general.safetensors", "abc", false, true, false};
+    plan.estimates = true;
     plan.scanners = {{1, 2, 3.1}, Vec3::Constant(NAN)};
     plan.s_min = 0.1, plan.s_max = 1.0 / 3.0;
     plan.normals = {
@@ -76,7 +77,7 @@ TEST_F(PlanFile, ComesBackAsItWas) {
   EXPECT_EQ(back.normals.averaging.deviation, 0.02);
   EXPECT_EQ(back.normals.averaging.middle, Vec3(1.0, 2.0, 3.5));
   EXPECT_TRUE(back.normals.made && back.normals.exact_planes && back.normals.exact);
-  EXPECT_TRUE(back.normals.noisy);
+  EXPECT_TRUE(back.normals.noisy && back.estimates);
   ASSERT_EQ(back.pyramids.size(), 4u);
   EXPECT_EQ(back.pyramids[0].levels, plan.pyramids[0].levels);
   EXPECT_EQ(back.pyramids[1].levels, plan.pyramids[1].levels);

@@ -200,7 +200,7 @@ void classify_file(const Job& job, const ClassifyArguments& arguments,
   StageClock clock(console_progress(common));
   const Progress& progress = clock.progress();
   clock.begin("read");
-  PointCloud cloud = read_cloud(job.input);
+  PointCloud cloud = read_cloud(job.input, &progress);
   set_viewpoint(job.input, arguments.viewpoint, cloud);
   check_codes_fit(arguments.codes, job, cloud);
   formats::check_positions(job.output, cloud);

@@ -108,7 +108,7 @@ void add_given_labels(const LinesArguments& arguments, std::vector<std::uint8_t>
 void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledCloud& labelled) {
   clock.begin("read");
   PointCloud& cloud = labelled.cloud;
-  cloud = read_cloud(arguments.input);
+  cloud = read_cloud(arguments.input, &clock.progress());
   set_viewpoint(arguments.input, arguments.viewpoint, cloud);
   warn_of_lines(arguments.input, cloud);
   throw_if_cancelled(&clock.progress());

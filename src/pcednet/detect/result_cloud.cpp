@@ -75,11 +75,7 @@ void set_columns(PointCloud& cloud, const Classification& result, const ClassTab
 }  // namespace
 
 std::vector<std::string> replaced_attributes(const PointCloud& cloud) {
-  const auto& comments = cloud.comments;
-  if (std::any_of(comments.begin(), comments.end(),
-                  [](const std::string& comment) { return comment.starts_with(kModelComment); })) {
-    return {};
-  }
+  if (names_model(cloud)) return {};
   std::vector<std::string> names;
   for (const std::string name : {"edge_class", "class", "p_sharp", "p_smooth", "p_class"}) {
     if (find_attribute(cloud, "scalar_" + name)) names.push_back(name);

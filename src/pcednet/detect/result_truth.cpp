@@ -27,18 +27,9 @@ std::vector<std::uint8_t> labels_in(const PointCloud& cloud, const char* column)
   return labels;
 }
 
-bool has_result_columns(const PointCloud& cloud) {
-  return std::all_of(kResultColumns.begin(), kResultColumns.end(), [&](const char* column) {
-    const Attribute* attribute = find_attribute(cloud, column);
-    return attribute && attribute->components == 1;
-  });
-}
-
 /// Other programs drop the comments and keep the columns.
 bool is_result(const PointCloud& cloud) {
-  return has_result_columns(cloud) ||
-         std::any_of(cloud.comments.begin(), cloud.comments.end(),
-                     [](const std::string& one) { return one.starts_with(kModelComment); });
+  return has_result_columns(cloud) || names_model(cloud);
 }
 
 /// Whether somebody corrected the classes rather than the labels, which were the same: those
@@ -81,6 +72,18 @@ ResultTruth own_labels(const PointCloud& cloud) {
 }
 
 }  // namespace
+
+bool has_result_columns(const PointCloud& cloud) {
+  return std::all_of(kResultColumns.begin(), kResultColumns.end(), [&](const char* column) {
+    const Attribute* attribute = find_attribute(cloud, column);
+    return attribute && attribute->components == 1;
+  });
+}
+
+bool names_model(const PointCloud& cloud) {
+  return std::any_of(cloud.comments.begin(), cloud.comments.end(),
+                     [](const std::string& one) { return one.starts_with(kModelComment); });
+}
 
 std::optional<ResultTruth> truth_of_result(const PointCloud& cloud) {
   if (!is_result(cloud)) return std::nullopt;

@@ -22,6 +22,11 @@ inline constexpr std::array<const char*, 2> kTruthColumns = {kPaintedLabels, kIn
 inline constexpr std::array<const char*, 3> kResultColumns = {"scalar_edge_class", "scalar_p_sharp",
                                                               "scalar_p_smooth"};
 
+/// Whether the cloud has all of these, with one number each. Needs no points.
+bool has_result_columns(const PointCloud& cloud);
+/// Whether its comments name the model of a result.
+bool names_model(const PointCloud& cloud);
+
 /// What a result holds to learn from and to score against.
 struct ResultTruth {
   std::vector<std::uint8_t> labels = {};  ///< one per point; empty if there are none but its own

@@ -29,7 +29,7 @@ struct InVoxel {
 };
 
 std::vector<InVoxel> by_voxels(std::span<const Vec3> points, const Averaging& averaging) {
-  const double edge = ThickNoise{.deviation = averaging.deviation}.voxel();
+  const double edge = ThickNoise{averaging.deviation, 0.0}.voxel();
   std::vector<InVoxel> sorted;
   sorted.reserve(points.size());
   for (std::uint32_t i = 0; i < points.size(); ++i) {

@@ -11,6 +11,7 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel_loops.h"
+#include "pcednet/detect/estimates.h"
 #include "pcednet/detect/rounding.h"
 #include "pcednet/detect/thinned_cloud.h"
 #include "pcednet/gls/fast_scale_space.h"
@@ -80,6 +81,13 @@ std::vector<std::vector<std::uint32_t>> batches_of(std::span<const Vec3> positio
   return batches;
 }
 
+/// Those of the first batch.
+PointCloud first_batch(const PointCloud& dense) {
+  PointCloud points;
+  append_surface(dense, batches_of(dense.positions).front(), points);
+  return points;
+}
+
 /// How notes begin that are of so many points.
 std::string whose_notes(std::size_t points, bool are_all) {
   return are_all ? "" : fmt::format("in a sample of {} points: ", points);
@@ -141,8 +149,7 @@ PreparedSample decide_normals(const DenseSample& all, const detect::PrepareOptio
   return sample;
 }
 
-DenseSample read_dense_sample(const SampledPoints& sample, const Plan& plan,
-                              const Progress* progress) {
+DenseSample read_dense_sample(const SampledPoints& sample, Plan& plan, const Progress* progress) {
   DenseSample all{.is_all = sample.is_all};
   if (!sample.is_all) all.cubes = choose_cubes(sample.positions, plan);
   const std::vector<BoundingBox>& cubes = all.cubes;
@@ -161,6 +168,10 @@ DenseSample read_dense_sample(const SampledPoints& sample, const Plan& plan,
     for_each_chunk(input, is_wanted, progress,
                    [&](const PointCloud& part, std::size_t) { append_inside(part, cubes, dense); });
     stage.advance();
+  }
+  if (dense.has_normals() && detect::has_lost_comments(outline)) {
+    plan.estimates = detect::are_estimates(first_batch(dense), progress);
+    detect::set_estimated_normals(dense, plan.estimates);
   }
   return all;
 }

@@ -19,9 +19,9 @@ struct DenseSample {
   double share = 1.0;  ///< of the points that were read: fewer where they are averaged
 };
 
-/// All points where the sample holds all; the cubes are around positions of the sample.
-DenseSample read_dense_sample(const SampledPoints& sample, const Plan& plan,
-                              const Progress* progress);
+/// All points where the sample holds all; the cubes are around positions of the sample. Of results
+/// that lost their comments, the plan learns whether their normals are estimates.
+DenseSample read_dense_sample(const SampledPoints& sample, Plan& plan, const Progress* progress);
 
 /// Puts averages in place of points in thick noise, as prepare() does with average_noise for a
 /// cloud in memory, and notes it. The plan gets the decision by decide_normals().

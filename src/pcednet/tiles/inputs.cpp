@@ -242,6 +242,7 @@ IndexedInput index_input(const fs::path& path, const Progress* progress,
 PointCloud outline_of(const Plan& plan) {
   const PlannedInput& input = plan.inputs.front();
   PointCloud outline = without_points(read_chunk(*open_planned(input), input, 0));
+  if (plan.estimates) detect::set_estimated_normals(outline, true);
   if (!io::are_same(plan.scanners, outline.scanners)) io::set_scanners(plan.scanners, outline);
   std::erase_if(outline.foreign_elements,
                 [](const ForeignElement& element) { return !io::is_las_element(element); });

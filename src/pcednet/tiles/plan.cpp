@@ -142,7 +142,8 @@ PlannedModel model_of(const Json& j, const Paths& paths) {
           .exact = j.at("exact")};
 }
 
-Json json_of(const detect::NormalsDecision& normals) {
+Json normals_of(const Plan& plan) {
+  const detect::NormalsDecision& normals = plan.normals;
   const detect::Rounding& rounding = normals.rounding;
   const detect::Averaging& averaging = normals.averaging;
   return {{"made", normals.made},
@@ -155,7 +156,8 @@ Json json_of(const detect::NormalsDecision& normals) {
           {"rounded_from", json_of(rounding.origin)},
           {"spacing", rounding.spacing},
           {"averaged_noise", averaging.deviation},
-          {"averaged_about", json_of(averaging.middle)}};
+          {"averaged_about", json_of(averaging.middle)},
+          {"unmarked_estimates", plan.estimates}};
 }
 
 detect::NormalsDecision normals_in(const Json& j) {
@@ -205,7 +207,7 @@ std::string text_of(const Plan& plan, const Paths& paths) {
       {"scanners", to_text(json_of(plan.scanners))},
       {"model", to_text(json_of(plan.model, paths))},
       {"scales", to_text(Json{{"s_min", plan.s_min}, {"s_max", plan.s_max}})},
-      {"normals", to_text(json_of(plan.normals))},
+      {"normals", to_text(normals_of(plan))},
       {"pyramids", json_lines(pyramids, "  ")},
       {"cell", to_text(Json(plan.grid.cell))},
       {"cells_across", to_text(Json(plan.grid.across))},
@@ -238,6 +240,7 @@ Plan plan_of(const Json& j, const Paths& paths, std::string& member) {
   plan.s_min = at("scales").at("s_min");
   plan.s_max = at("scales").at("s_max");
   plan.normals = normals_in(at("normals"));
+  plan.estimates = at("normals").at("unmarked_estimates");
   for (const Json& pyramid : at("pyramids")) plan.pyramids.push_back(pyramid_of(pyramid));
   plan.grid.cell = at("cell");
   plan.grid.across = at("cells_across");

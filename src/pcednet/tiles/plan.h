@@ -63,6 +63,7 @@ struct Plan {
   /// of few points that count as a piece of a larger cloud.
   std::size_t places = 0;
   PlannedModel model = {};
+  bool estimates = false;  ///< the inputs' normals are, and their comments, if any, do not say so
   double s_min = 0.0, s_max = 0.0;
   detect::NormalsDecision normals = {};
   /// One per octave of scales in use; without levels for the exact engine.
