@@ -14,6 +14,7 @@
 
 #include "number_options.h"
 #include "pcednet/core/exists_already.h"
+#include "pcednet/core/stopwatch.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/io/text_scan.h"
 
@@ -45,12 +46,40 @@ void put_on_stderr(const std::string& text) {
 
 bool progress_line_open = false;
 
-void report_on_terminal(const std::string& stage, double fraction) {
+/// Estimates how long a stage still takes, from its time so far.
+class TimeLeft {
+ public:
+  /// Such as ", 3 min left"; nothing before it can be told.
+  std::string text(const std::string& stage, double fraction) {
+    if (stage != stage_ || fraction < last_) *this = TimeLeft(stage, fraction);
+    last_ = fraction;
+    constexpr double kSoonest = 2.0, kLeast = 0.02;
+    const double seconds = watch_.elapsed(), done = fraction - first_;
+    if (seconds < kSoonest || done < kLeast || fraction >= 1.0) return {};
+    const double left = seconds * (1.0 - fraction) / done;
+    return left < 100.0 ? fmt::format(", {:.0f} s left", left)
+                        : fmt::format(", {:.0f} min left", left / 60.0);
+  }
+
+  TimeLeft() = default;
+
+ private:
+  TimeLeft(std::string stage, double fraction)
+      : stage_(std::move(stage)), first_(fraction), last_(fraction) {}
+
+  std::string stage_ = {};
+  double first_ = 0.0, last_ = 0.0;
+  Stopwatch watch_ = {};
+};
+
+void report_on_terminal(const std::string& stage, double fraction, const std::string& left) {
   constexpr int kWidth = 30;
+  constexpr std::size_t kLeftWidth = 14;
   const int filled = static_cast<int>(fraction * kWidth);
   progress_line_open = fraction < 1.0;
-  put_on_stderr(fmt::format("\r{:<14} [{:-<{}}] {:3.0f} %{}", stage, std::string(filled, '#'),
-                            kWidth, 100 * fraction, progress_line_open ? "" : "\n"));
+  put_on_stderr(fmt::format("\r{:<14} [{:-<{}}] {:3.0f} %{:<{}}{}", stage, std::string(filled, '#'),
+                            kWidth, 100 * fraction, left, kLeftWidth,
+                            progress_line_open ? "" : "\n"));
   std::fflush(stderr);
 }
 
@@ -110,20 +139,24 @@ CLI::App* add_command(CLI::App& app, Common& common, const std::string& name,
 Progress console_progress(const Common& common) {
   Progress progress;
   progress.cancelled = [] { return interrupted != 0; };
+  const auto time = std::make_shared<TimeLeft>();
   if (common.progress == "json") {
     progress.report = [](const std::string& stage, double fraction) {
       put_on_stderr(fmt::format("{{\"stage\":\"{}\",\"fraction\":{:.3f}}}\n", stage, fraction));
     };
   } else if (common.progress == "plain") {
     auto last = std::make_shared<std::pair<std::string, int>>("", -1);
-    progress.report = [last](const std::string& stage, double fraction) {
+    progress.report = [last, time](const std::string& stage, double fraction) {
+      const std::string left = time->text(stage, fraction);
       const int tenths = static_cast<int>(fraction * 10);
       if (last->first == stage && last->second == tenths) return;
       *last = {stage, tenths};
-      put_on_stderr(fmt::format("{} {:.0f} %\n", stage, 100 * fraction));
+      put_on_stderr(fmt::format("{} {:.0f} %{}\n", stage, 100 * fraction, left));
     };
   } else if (common.progress == "auto" && isatty(STDERR_FILENO) == 1) {
-    progress.report = report_on_terminal;
+    progress.report = [time](const std::string& stage, double fraction) {
+      report_on_terminal(stage, fraction, time->text(stage, fraction));
+    };
   }
   return progress;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <unordered_set>
@@ -131,6 +132,19 @@ PointsNearEdges averages_of(PointsNearEdges&& points, const detect::Averaging& a
 }
 
 }  // namespace
+
+void check_near_edges(const TiledCloud& cloud, std::uint64_t limit, const Progress& progress) {
+  const Cubes cubes = cubes_near_edges(cloud, progress);
+  std::size_t near = 0;
+  cloud.each([&](const PointCloud& part, const tiles::TileFindings&) {
+    throw_if_cancelled(&progress);
+    near += static_cast<std::size_t>(std::count_if(
+        part.positions.begin(), part.positions.end(),
+        [&](const Vec3& position) { return tiles::has_place(position) && cubes.hold(position); }));
+    check_memory(near, cloud.plan().normals.averaging, limit);
+    return true;
+  });
+}
 
 PointsNearEdges read_near_edges(const TiledCloud& cloud, std::uint64_t limit,
                                 const Progress& progress) {

@@ -21,4 +21,7 @@ struct PointsNearEdges {
 PointsNearEdges read_near_edges(const TiledCloud& cloud, std::uint64_t limit,
                                 const Progress& progress);
 
+/// Throws the same Error without keeping any.
+void check_near_edges(const TiledCloud& cloud, std::uint64_t limit, const Progress& progress);
+
 }  // namespace pcednet::app

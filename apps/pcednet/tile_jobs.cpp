@@ -14,6 +14,7 @@
 
 #include "common.h"
 #include "pcednet/core/error.h"
+#include "pcednet/core/stopwatch.h"
 #include "pcednet/tiles/join.h"
 
 namespace pcednet::app {
@@ -52,13 +53,14 @@ class Running {
   }
 
   std::size_t size() const { return tiles_.size(); }
-  void add(pid_t child, std::size_t tile) { tiles_[child] = tile; }
+  void add(pid_t child, std::size_t tile) { tiles_[child] = {tile, Stopwatch()}; }
   void stop() const {
-    for (const auto& [child, tile] : tiles_) kill(child, SIGTERM);
+    for (const auto& [child, at_work] : tiles_) kill(child, SIGTERM);
   }
 
   struct Ended {
     std::size_t tile = 0;
+    double seconds = 0.0;
     int code = 0;
   };
   /// The next that ends; none after a signal.
@@ -70,13 +72,14 @@ class Running {
       if (child < 0 && errno == ECHILD) tiles_.clear();
       return {};
     }
-    const Ended ended = {found->second, WIFEXITED(status) ? WEXITSTATUS(status) : 1};
+    const auto& [tile, watch] = found->second;
+    const Ended ended = {tile, watch.elapsed(), WIFEXITED(status) ? WEXITSTATUS(status) : 1};
     tiles_.erase(found);
     return {ended};
   }
 
  private:
-  std::map<pid_t, std::size_t> tiles_ = {};
+  std::map<pid_t, std::pair<std::size_t, Stopwatch>> tiles_ = {};
 };
 
 }  // namespace
@@ -99,9 +102,10 @@ std::size_t run_tile_jobs(const TileJobs& jobs, TileQueue& queue, const Progress
       ++started;
       continue;
     }
-    for (const auto& [tile, its_code] : running.wait()) {
-      stage.advance();
+    for (const auto& [tile, seconds, its_code] : running.wait()) {
       queue.finish(tile);
+      if (its_code == 0) jobs.done(tile, seconds);
+      stage.advance();
       if (its_code == 0) continue;
       failed.push_back(tile);
       if (code == 0) code = its_code;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 
 #include "pcednet/core/progress.h"
 #include "tile_queue.h"
@@ -10,8 +11,9 @@ namespace pcednet::app {
 
 struct TileJobs {
   std::filesystem::path plan;
-  int jobs = 1;     ///< processes at a time
-  int threads = 0;  ///< of each
+  int jobs = 1;                                                ///< processes at a time
+  int threads = 0;                                             ///< of each
+  std::function<void(std::size_t tile, double seconds)> done;  ///< called where one succeeded
 };
 
 /// Runs every tile of the queue as a separate process, several at a time; returns how many. A

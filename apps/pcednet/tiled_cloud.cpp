@@ -139,6 +139,7 @@ TiledCloud::TiledCloud(TiledRequest request, const detect::EdgeModel& model,
     warn(fmt::format("that is more than {}: no tile is shorter than its buffer",
                      size_text(request_.memory)));
   }
+  if (request_.given && request_.look_first) request_.look_first(*this);
   labels_.emplace(request_.output, !request_.given && has_own_classes(model.table),
                   plan_.normals.made);
   if (request_.given) {

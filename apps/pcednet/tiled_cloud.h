@@ -52,6 +52,8 @@ class PassingFolder {
   std::filesystem::path path_;
 };
 
+class TiledCloud;
+
 struct TiledRequest {
   std::filesystem::path input;
   std::filesystem::path output;  ///< temporary files are beside it
@@ -61,6 +63,8 @@ struct TiledRequest {
   std::uint64_t memory = 0;            ///< for a tile
   /// Existing labels of a part's points; empty: the model finds them.
   std::function<detect::Classification(const PointCloud& part)> given = {};
+  /// Called where these are given, before the long work: may look at each part, without normals.
+  std::function<void(const TiledCloud& cloud)> look_first = {};
 };
 
 /// A cloud whose points get normals, if needed, and labels in the memory of one tile, and which is

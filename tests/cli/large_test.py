@@ -151,6 +151,14 @@ class Large(CliTest):
         self.assertAlmostEqual(tiled / count, 1, delta=0.02)
         self.assertAlmostEqual(tiled_length / length, 1, delta=0.01)
 
+    def test_lines_that_memory_does_not_hold_are_refused_before_the_work(self):
+        write_ply(self.folder / "a.ply", field(3, 5000, normals=False)[0])
+        run("classify", self.folder / "a.ply", "-o", self.folder / "a.laz")
+        done = run("lines", self.folder / "a.laz", "-o", self.folder / "a.obj", "--max-memory", "20M",
+                   "--progress", "plain", expect=1)
+        self.assertIn("their lines take more memory than 20 MiB", done.stderr)
+        self.assertNotIn("tiles 0 %", done.stderr)
+
     def test_lines_of_thick_noise_come_from_averages(self):
         write_ply(self.folder / "a.ply", stairs())
         count, length, said = self.lines(self.folder / "a.ply")

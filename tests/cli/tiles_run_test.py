@@ -1,7 +1,9 @@
 """pcednet tiles run: no point lost or doubled and nothing replaced, whatever happens on the way."""
+import contextlib
 import json
 import os
 import pathlib
+import pty
 import random
 import re
 import resource
@@ -149,6 +151,32 @@ class TilesRun(TilesTest):
         self.assertEqual([t.read_bytes() for t in tiles], again)
         self.assertEqual(len(rows), content["points"])
 
+    def on_terminal(self, *arguments):
+        """What a run writes on a terminal."""
+        ours, its = pty.openpty()
+        process = subprocess.Popen([PROGRAM, *map(str, arguments)], stderr=its)
+        os.close(its)
+        said = b""
+        with contextlib.suppress(OSError):  # EIO at the end
+            while some := os.read(ours, 65536):
+                said += some
+        os.close(ours)
+        self.assertEqual(process.wait(), 0)
+        return said.decode()
+
+    def test_a_terminal_shows_tiles_on_lines_of_their_own(self):
+        plan, _ = self.small()
+        for jobs in 1, 2:
+            said = self.on_terminal("tiles", "run", plan, "--overwrite", "--jobs", jobs)
+            self.assertEqual(len(re.findall(r"(?:^|\n)tile \d: \d+ points, ", said)), 9, said)
+            self.assertRegex(said, r"\rtiles +\[#+-+\] +56 %")
+
+    def test_the_time_that_is_left_is_told(self):
+        write_ply(self.folder / "a.ply", *field(3, 4000))
+        plan, _ = self.make_plan(self.folder / "a.ply", "--exact", tile=0.5)
+        said = run("tiles", "run", plan, "--threads", 1, "--progress", "plain").stderr
+        self.assertRegex(said, r"\ntiles \d\d %, \d+ s left\n")
+
     def test_a_stop_is_told_once(self):
         write_ply(self.folder / "a.ply", *field())
         plan, _ = self.make_plan(self.folder / "a.ply")
@@ -263,7 +291,7 @@ class TilesRun(TilesTest):
             self.assertEqual(first.returncode, 0, said)
             ran = len(re.findall(r"^tile \d+: ", said, re.M))
             self.assertLess(ran, tiles)
-            self.assertRegex(said, rf"\n{ran} tiles? run, 0 were done, {tiles - ran} were done by another run meanwhile\n")
+            self.assertRegex(said, rf"(?m)^{ran} tiles? run, 0 were done, {tiles - ran} were done by another run meanwhile$")
 
     def test_an_interrupt_stops_cleanly(self):
         write_ply(self.folder / "a.ply", *field())

@@ -159,6 +159,9 @@ void read_labelled_in_tiles(const LinesArguments& arguments, const TilesNeeded& 
                        .memory = needed.memory};
   if (!arguments.classify && has_labels(arguments, clock.progress())) {
     request.given = [&](const PointCloud& part) { return labels_of_part(arguments, part); };
+    request.look_first = [&](const TiledCloud& cloud) {
+      check_near_edges(cloud, memory_limit(arguments.memory), clock.progress());
+    };
   }
   const bool are_given = request.given != nullptr;
   say(needed.reason +

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 
 #include "byte_size.h"
 #include "commands.h"
@@ -48,27 +49,36 @@ int jobs_within(const RunArguments& arguments, const tiles::Plan& plan) {
   return static_cast<int>(fit);
 }
 
-/// Runs the tiles of the queue; returns how many.
-std::size_t run_here(const tiles::Plan& plan, TileQueue& queue, const Common& common) {
+void say_tile(const tiles::Plan& plan, std::size_t id, double seconds) {
+  say(fmt::format("tile {}: {} points, {:.1f} s -> {}", id, plan.tiles[id].points, seconds,
+                  plan.tiles[id].output.string()));
+}
+
+/// Runs the tiles of the queue; returns how many. A job says nothing: run_tile_jobs() does.
+std::size_t run_here(const tiles::Plan& plan, TileQueue& queue, bool as_job, const Common& common) {
   const detect::EdgeModel model = tiles::load_planned_model(plan);
-  const Progress progress = console_progress(common);
+  const Progress progress = console_progress(common), quiet = without_report(&progress);
+  const std::size_t all = queue.left();
+  std::optional<Stage> stage;
+  if (all > 1) stage.emplace(&progress, "tiles", all);  // in place of those of each tile
   std::size_t ran = 0;
   while (const auto id = queue.next()) {
     throw_if_cancelled(&progress);
     Stopwatch watch;
-    tiles::run_tile(plan, *id, model, &progress);
+    tiles::run_tile(plan, *id, model, stage ? &quiet : &progress);
     queue.finish(*id);
-    say(fmt::format("tile {}: {} points, {:.1f} s -> {}", *id, plan.tiles[*id].points, watch.lap(),
-                    plan.tiles[*id].output.string()));
+    if (!as_job) say_tile(plan, *id, watch.lap());
+    if (stage) stage->advance();
     ++ran;
   }
   return ran;
 }
 
-std::size_t run_processes(const tiles::Plan& plan, const TileJobs& jobs, TileQueue& queue,
+std::size_t run_processes(const tiles::Plan& plan, TileJobs jobs, TileQueue& queue,
                           const Common& common) {
   tiles::load_planned_model(plan);  // throws before any process starts, as do the next lines
   for (const tiles::PlannedInput& input : plan.inputs) tiles::check_size(input);
+  jobs.done = [&](std::size_t tile, double seconds) { say_tile(plan, tile, seconds); };
   return run_tile_jobs(jobs, queue, console_progress(common));
 }
 
@@ -139,10 +149,11 @@ void run_tiles(const RunArguments& arguments, const Common& common) {
   std::size_t ran = 0;
   TileQueue queue(plan, ids, is_done);
   if (jobs > 1 && ids.size() > 1) {
-    ran = run_processes(plan, {.plan = arguments.plan, .jobs = jobs, .threads = common.threads},
-                        queue, common);
+    ran = run_processes(
+        plan, {.plan = arguments.plan, .jobs = jobs, .threads = common.threads, .done = {}}, queue,
+        common);
   } else if (!ids.empty()) {
-    ran = run_here(plan, queue, common);
+    ran = run_here(plan, queue, arguments.as_job, common);
   }
   // A single tile has reported, or is left out.
   if (all > 1 || (all == 1 && ran == 0)) say_run(all, ids.size(), ran);

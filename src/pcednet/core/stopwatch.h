@@ -8,10 +8,14 @@ namespace pcednet {
 /// Wall time in seconds, lap by lap.
 class Stopwatch {
  public:
-  /// Seconds since the last call, or since the stopwatch was made.
+  /// Seconds since the last lap, or since the stopwatch was made.
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+  }
+
+  double elapsed() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - last_).count();
   }
 
  private:
