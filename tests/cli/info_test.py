@@ -65,6 +65,14 @@ class Info(CliTest):
         self.assertEqual(facts["outliers"], outliers)
         self.assertIn(f"{outliers} of {len(p)} points are outliers", " ".join(facts["problems"]))
 
+    def test_labels_of_a_result_in_las_are_told(self):
+        write_ply(self.folder / "a.ply", *cube(3000)[:2])
+        for ending in "ply", "laz":
+            run("classify", self.folder / "a.ply", "-o", self.folder / f"result.{ending}")
+        ply, las = (self.info(self.folder / f"result.{ending}")[0]["labels"] for ending in ("ply", "laz"))
+        self.assertEqual(las, ply)
+        self.assertIn("sharp-edge (2)", run("info", self.folder / "result.laz").stdout)
+
     def test_bounds_of_las_have_the_decimals_of_its_scale(self):
         p = np.round(np.random.default_rng(1).random((100, 3)) * 1000 + [432100, 5812000.5, 0], 3)
         (self.folder / "a.xyz").write_text("".join("%.3f %.3f %.3f\n" % tuple(q) for q in p))

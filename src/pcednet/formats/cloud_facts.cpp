@@ -8,9 +8,11 @@
 #include <cstdint>
 #include <numeric>
 
+#include "pcednet/core/error.h"
 #include "pcednet/core/median.h"
 #include "pcednet/core/random.h"
 #include "pcednet/formats/format.h"
+#include "pcednet/formats/labels.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/kd_tree.h"
@@ -99,6 +101,16 @@ double distance_of_points(const SampledSpacing& spacing) {
   return spacing.median > 0.0 ? spacing.median : spacing.mean;
 }
 
+/// The cloud's own, otherwise those of its column, as of a result in LAS.
+std::vector<std::uint8_t> labels_in_use(const PointCloud& part) {
+  if (part.has_labels()) return part.labels;
+  try {
+    return labels_of(part, {});
+  } catch (const Error&) {  // numbers that are no labels
+    return {};
+  }
+}
+
 }  // namespace
 
 void SpacingSample::add(std::span<const double> sq_distances) {
@@ -140,7 +152,7 @@ void add_part(const PointCloud& part, CloudFacts& facts) {
   if (facts.read == 0) add_in_common(part, facts);
   facts.read += part.size();
   facts.bounds.add(bounding_box(part.positions));
-  for (const std::uint8_t label : part.labels) ++facts.labels[label];
+  for (const std::uint8_t label : labels_in_use(part)) ++facts.labels[label];
   for (std::size_t a = 0; a < std::min(part.attributes.size(), facts.attributes.size()); ++a) {
     add_values(part.attributes[a], part.size(), facts.attributes[a]);
   }

@@ -66,7 +66,8 @@ struct CloudFacts {
   BoundingBox bounds = {};
   std::optional<SampledSpacing> spacing = {};  ///< none unless eleven points are finite
   bool has_normals = false, has_colours = false;
-  std::map<std::uint8_t, std::size_t> labels = {};  ///< points of each; empty without labels
+  /// Points of each, of the column of edge classes where there are no others.
+  std::map<std::uint8_t, std::size_t> labels = {};
   std::vector<AttributeFacts> attributes = {};
   std::vector<std::string> comments = {};
   std::vector<std::string> elements = {};  ///< foreign ones, by the first lines of their headers
