@@ -1,5 +1,7 @@
 #include "pcednet/detect/far_points.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 
@@ -59,6 +61,13 @@ std::vector<std::uint32_t> far_points(std::span<const Vec3> positions) {
     if (is_suspect(positions[i]) && (positions[i] - others.middle).norm() > most) far.push_back(i);
   }
   return far;
+}
+
+std::string note_on_far(std::span<const std::uint32_t> far, std::span<const Vec3> positions) {
+  return fmt::format(
+      "{} point{} far from all others (the first has a coordinate of {:.6g}): treated as having no "
+      "position",
+      far.size(), far.size() == 1 ? " is" : "s are", positions[far.front()].cwiseAbs().maxCoeff());
 }
 
 }  // namespace pcednet::detect

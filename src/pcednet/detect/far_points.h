@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "pcednet/core/vec3.h"
@@ -19,5 +20,8 @@ Vec3 middle_of(std::span<const Vec3> positions);
 /// distance from it, as values are that stand for "no data". Distances to them would leave no
 /// digits for the others.
 std::vector<std::uint32_t> far_points(std::span<const Vec3> positions);
+
+/// For the user, of one or more of them.
+std::string note_on_far(std::span<const std::uint32_t> far, std::span<const Vec3> positions);
 
 }  // namespace pcednet::detect

@@ -163,11 +163,7 @@ void estimate(PreparedCloud& prepared, const Points& cloud, const std::string& w
 void leave_out_far_points(PreparedCloud& prepared) {
   const std::vector<std::uint32_t> far = far_points(prepared.positions);
   if (far.empty()) return;
-  const double largest = prepared.positions[far.front()].cwiseAbs().maxCoeff();
-  prepared.notes.push_back(fmt::format(
-      "{} point{} far from all others (the first has a coordinate of {:.6g}): treated as having no "
-      "position",
-      far.size(), far.size() == 1 ? " is" : "s are", largest));
+  prepared.notes.push_back(note_on_far(far, prepared.positions));
   prepared.moved.assign(prepared.positions.begin(), prepared.positions.end());
   for (const std::uint32_t i : far) {
     prepared.moved[i] = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
@@ -186,11 +182,9 @@ void order_finite_points(PreparedCloud& prepared) {
                                        points - finite, points));
 }
 
-/// Puts fewer points in place of the cloud's, see averages.h.
-void use_fewer(std::vector<Vec3> positions, std::vector<std::uint32_t> average_of,
-               PreparedCloud& prepared) {
+/// Puts these in place of the positions.
+void use_positions(std::vector<Vec3> positions, PreparedCloud& prepared) {
   prepared.moved = std::move(positions);
-  prepared.average_of = std::move(average_of);
   prepared.positions = prepared.moved;
   prepared.curve = spatial::curve_order(prepared.positions);
 }
@@ -198,7 +192,8 @@ void use_fewer(std::vector<Vec3> positions, std::vector<std::uint32_t> average_o
 /// The parts of the cloud that are used then.
 Points use_averages(ThinnedCloud&& thinned, PreparedCloud& prepared) {
   prepared.decision.averaging = thinned.averaging;
-  use_fewer(std::move(thinned.positions), std::move(thinned.average_of), prepared);
+  prepared.average_of = std::move(thinned.average_of);
+  use_positions(std::move(thinned.positions), prepared);
   return {prepared.positions, {}, [] { return std::vector<Vec3>(); }};
 }
 
@@ -214,20 +209,16 @@ Points averaged(const Points& cloud, PreparedCloud& prepared, const Progress* pr
   if (!thinned) return cloud;
   prepared.notes.push_back(note_on(*thinned));
   prepared.scanners = std::move(thinned->scanners);
-  use_fewer(std::move(thinned->positions), std::move(thinned->average_of), prepared);
+  prepared.average_of = std::move(thinned->average_of);
+  use_positions(std::move(thinned->positions), prepared);
   return {prepared.positions, {}, [&prepared] { return prepared.scanners; }};
 }
 
 /// Spreads rounded positions.
 void spread_positions(const Rounding& rounding, PreparedCloud& prepared) {
   if (rounding.step == 0.0) return;
-  prepared.moved = spread(prepared.positions, rounding);
-  prepared.positions = prepared.moved;
-  prepared.curve = spatial::curve_order(prepared.positions);
-  prepared.notes.push_back(fmt::format(
-      "coordinates are rounded to {:.6g}, about {:.2g} of the spacing: points are spread "
-      "within such a step before they are described, and written as they were read",
-      rounding.step, rounding.step / rounding.spacing));
+  use_positions(spread(prepared.positions, rounding), prepared);
+  prepared.notes.push_back(note_on(rounding));
 }
 
 /// Of the points in order. They are counted as they lie in memory.

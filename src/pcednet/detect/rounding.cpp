@@ -1,5 +1,7 @@
 #include "pcednet/detect/rounding.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -89,6 +91,13 @@ double share_of_places(std::span<const Vec3> positions, std::span<const std::uin
   if (curve.empty()) return 1.0;
   return static_cast<double>(spatial::firsts_of_places(positions, curve).size()) /
          static_cast<double>(curve.size());
+}
+
+std::string note_on(const Rounding& rounding) {
+  return fmt::format(
+      "coordinates are rounded to {:.6g}, about {:.2g} of the spacing: points are spread "
+      "within such a step before they are described, and written as they were read",
+      rounding.step, rounding.step / rounding.spacing);
 }
 
 double smallest_scale(const PreparedCloud& cloud, const gls::ScaleRange& range) {

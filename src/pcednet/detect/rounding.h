@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "pcednet/core/vec3.h"
@@ -23,6 +24,9 @@ Rounding find_rounding(std::span<const Vec3> positions, std::span<const std::uin
 /// coordinate: the stairs become noise of 0.29 steps. What is added depends on the rounded position
 /// relative to the origin alone, so copies of a point stay copies.
 std::vector<Vec3> spread(std::span<const Vec3> positions, const Rounding& rounding);
+
+/// For the user, where positions were spread.
+std::string note_on(const Rounding& rounding);
 
 /// Whether coordinates of this type may be rounded to more than the spacing, which s_min is then:
 /// those of float32, unless `range` gives s_min or prepare() has spread the positions.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "pcednet/io/text_scan.h"
 
@@ -40,15 +39,10 @@ bool are_same(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   });
 }
 
-void set_scanners(std::vector<Vec3> scanners, PointCloud& cloud) {
+void set_scanners(const std::vector<Vec3>& scanners, PointCloud& cloud) {
   std::erase_if(cloud.comments, [](const auto& one) { return one.starts_with("scanner "); });
-  for (std::size_t i = 0; i < scanners.size(); ++i) {
-    const Vec3& place = scanners[i];
-    if (!place.allFinite()) continue;
-    cloud.comments.push_back(
-        fmt::format("scanner {}: {} {} {}", i, place.x(), place.y(), place.z()));
-  }
-  cloud.scanners = std::move(scanners);
+  cloud.scanners.clear();
+  for (const Vec3& place : scanners) add_scanner(place, cloud);
 }
 
 bool has_several_scans(const PointCloud& cloud) {

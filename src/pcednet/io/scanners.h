@@ -19,7 +19,7 @@ std::vector<Vec3> scanners_of_comments(const std::vector<std::string>& comments)
 bool are_same(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
 
 /// Gives the cloud these scanners, and their comments in place of others.
-void set_scanners(std::vector<Vec3> scanners, PointCloud& cloud);
+void set_scanners(const std::vector<Vec3>& scanners, PointCloud& cloud);
 
 /// Whether the points are of several scans, so that no scanner saw all.
 bool has_several_scans(const PointCloud& cloud);
