@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/averages.h"
 #include "pcednet/detect/prepare.h"
@@ -18,15 +19,18 @@ bool are_estimates(const PointCloud& cloud, const Progress* progress) {
   constexpr double kDegree = std::numbers::pi / 180.0;
   constexpr double kShare = 0.9;
   double within = 3.0 * kDegree;
-  // Signs do not matter, and those towards one place are found soonest.
-  const std::vector<Vec3> scanners(cloud.size(), Vec3::Zero());
+  // Signs do not matter, and those towards one place are found soonest: one far aside, which is
+  // below or above no point.
+  const BoundingBox box = bounding_box(cloud.positions);
+  const Vec3 aside = box.max + Vec3(10.0 * box.diagonal(), 0.0, 0.0);
+  const std::vector<Vec3> scanners(cloud.size(), aside);
   std::vector<Vec3> made;
   try {
     PreparedCloud prepared =
         prepare(PointArrays{.positions = cloud.positions, .scanners = scanners},
                 {.average_noise = true}, progress);
     if (prepared.decision.exact) return false;
-    if (prepared.is_averaged()) within = 20.0 * kDegree;
+    if (prepared.decision.averaging.deviation > 0.0) within = 20.0 * kDegree;
     made = of_all_points(prepared, std::move(prepared.made));
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::kInsufficient) throw;

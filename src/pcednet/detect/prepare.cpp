@@ -248,12 +248,12 @@ void check_planes_fit(const PreparedCloud& prepared) {
                           extent));
 }
 
-/// Estimates normals if so many are missing that it matters.
-void estimate_missing(PreparedCloud& prepared, const Points& cloud, const Progress* progress) {
+/// Estimates normals if so many are missing that it matters, `why` being the reason.
+void estimate_missing(PreparedCloud& prepared, const Points& cloud, const std::string& why,
+                      const Progress* progress) {
   const std::size_t finite = prepared.curve.size(), missing = finite - count_usable(prepared);
   if (missing == 0 || missing < finite / kShareToEstimate) return;
   check_planes_fit(prepared);
-  const std::string why = why_estimated(prepared, cloud);
   prepared.decision.rounding = find_rounding(prepared.positions, prepared.curve);
   spread_positions(prepared.decision.rounding, prepared);
   prepared.decision.exact = is_exact(prepared.positions, prepared.curve);
@@ -348,7 +348,7 @@ PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
   }
   const Points used =
       options.average_noise && !cloud.has_normals() ? averaged(cloud, prepared, progress) : cloud;
-  estimate_missing(prepared, used, progress);
+  estimate_missing(prepared, used, why_estimated(prepared, cloud), progress);
   if (prepared.made.empty()) note_misfits(prepared);
   if (prepared.made.empty() && !options.keep_orientation) orient_mixed(prepared, cloud, progress);
   note_unusable(prepared);
