@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "pcednet/core/random.h"
@@ -70,6 +71,58 @@ TEST(Shadows, OfAScannerThatIsNotKnownAreBoundaries) {
   const PanelScan scan;
   const std::vector<Vec3> unknown(scan.positions.size(), Vec3::Constant(NAN));
   EXPECT_EQ(scan.lengths(unknown).shadow, scan.lengths({}).shadow);
+}
+
+/// Level ground around a scanner that sees nothing more than 60 degrees below it.
+EdgePoints ground_around(const Vec3& scanner, double from_turn, std::vector<Vec3>& positions,
+                         std::vector<Vec3>& normals, std::vector<std::uint8_t>& classes) {
+  constexpr double kStep = 0.012;
+  Random random(22);
+  for (double down = 0.3; down < std::numbers::pi / 3.0; down += kStep) {
+    for (double turn = from_turn; turn < std::numbers::pi; turn += kStep) {
+      const Vec3 beam(std::cos(down) * std::cos(turn), std::cos(down) * std::sin(turn),
+                      -std::sin(down));
+      const double range = scanner.z() / std::sin(down) + 0.002 * random.normal();
+      positions.push_back(scanner + range * beam);
+    }
+  }
+  normals.assign(positions.size(), Vec3::UnitZ());
+  classes.assign(positions.size(), kNonEdge);
+  return {.positions = positions, .normals = normals, .classes = classes};
+}
+
+/// The length of the boundaries within 1.3 of the scanner.
+double length_below(const Vec3& scanner, const EdgePoints& points) {
+  double length = 0.0;
+  for (const Curve& curve : find_lines(points, {.boundaries = true})) {
+    double farthest = 0.0;
+    for (const Vec3& at : sampled(curve, 0.01)) {
+      farthest = std::max(farthest, (at - scanner).head<2>().norm());
+    }
+    if (farthest < 1.3) length += length_of(curve);
+  }
+  return length;
+}
+
+TEST(Shadows, OfTheTripodAreNoBoundaries) {
+  const Vec3 scanner(10.0, 20.0, 1.5);
+  std::vector<Vec3> positions, normals;
+  std::vector<std::uint8_t> classes;
+  EdgePoints points = ground_around(scanner, -std::numbers::pi, positions, normals, classes);
+  EXPECT_GT(length_below(scanner, points), 4.0);  // a circle of radius .87
+  const std::vector<Vec3> scanners(positions.size(), scanner);
+  points.scanners = scanners;
+  EXPECT_EQ(length_below(scanner, points), 0.0);
+}
+
+TEST(Shadows, AreNotTheEndOfAPartOfAScan) {
+  const Vec3 scanner(10.0, 20.0, 1.5);
+  std::vector<Vec3> positions, normals;
+  std::vector<std::uint8_t> classes;
+  EdgePoints points = ground_around(scanner, 2.0, positions, normals, classes);
+  const std::vector<Vec3> scanners(positions.size(), scanner);
+  points.scanners = scanners;
+  EXPECT_GT(length_below(scanner, points), 0.8);
 }
 
 }  // namespace

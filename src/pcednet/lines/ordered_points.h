@@ -48,6 +48,7 @@ class OrderedPoints {
     return points_.scanners.empty() ? Vec3(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()))
                                     : Vec3(points_.scanners[order_[i]] - origin_);
   }
+  bool has_scanners() const { return !points_.scanners.empty(); }
   bool has_probabilities() const { return !points_.p_sharp.empty(); }
   /// The probability of an edge; from the class alone if there are no probabilities.
   float probability(std::size_t i) const;

@@ -49,7 +49,7 @@ std::optional<std::vector<Piece>> find_plane_edges(const OrderedPoints& cloud,
                                                    const Sampling& sampling,
                                                    const Progress* progress) {
   const double spacing = sampling.spacing;
-  if (!(spacing > 0.0) || cloud.size() > kMostPoints) return std::nullopt;
+  if (!(spacing > 0.0) || cloud.size() > kMostPoints || cloud.has_scanners()) return std::nullopt;
   const spatial::KdTree plan = plan_of(cloud);
   if (!is_seen_from_above(cloud, sampling, plan)) return std::nullopt;
   const Faces faces = find_faces(cloud, sampling, progress);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
 
 #include "pcednet/core/median.h"
@@ -16,6 +17,13 @@ constexpr std::size_t kLeast = 4;     // of these beside the point
 constexpr double kBefore = 6.0;       // spacings
 constexpr double kJump = 3.0;         // times the difference to the beams beyond
 
+// Of the ends of beams below and above a scanner; heights are sines.
+constexpr std::size_t kFewStray = 10, kShareOfStray = 2000;  // beams beyond the last row
+constexpr double kSteep = 0.64, kPole = 0.9999;              // 40 and 89 degrees
+constexpr double kLastRows = 0.03;
+constexpr std::size_t kSectors = 36;
+constexpr std::ptrdiff_t kMostSectors = 24;  // that a part of a turn may see
+
 std::array<double, 3> key_of(const Vec3& scanner) {
   return {scanner.x(), scanner.y(), scanner.z()};
 }
@@ -24,7 +32,35 @@ double median_of(std::span<const double> ranges) {
   return median(std::vector<double>(ranges.begin(), ranges.end()));
 }
 
+/// The angle above the horizon, or below it for `up` -1, from which a scanner that turns has no
+/// beams; none unless it is steep, and beams end there all around.
+std::optional<double> end_of_beams(std::span<const Vec3> beams, double up) {
+  std::vector<double> heights(beams.size());
+  std::transform(beams.begin(), beams.end(), heights.begin(),
+                 [&](const Vec3& beam) { return -up * beam.z(); });
+  const std::size_t stray = std::max(kFewStray, beams.size() / kShareOfStray);
+  const double end = -value_at_rank(heights, std::min(stray, beams.size() - 1));
+  if (end < kSteep || end > kPole) return std::nullopt;
+  std::array<bool, kSectors> sees = {};
+  for (const Vec3& beam : beams) {
+    if (up * beam.z() < end - kLastRows) continue;
+    const double turn = std::atan2(beam.y(), beam.x()) / (2.0 * std::numbers::pi) + 0.5;
+    sees[std::min(static_cast<std::size_t>(turn * kSectors), kSectors - 1)] = true;
+  }
+  const bool all_around = std::count(sees.begin(), sees.end(), true) > kMostSectors;
+  return all_around ? std::optional(std::asin(end)) : std::nullopt;
+}
+
 }  // namespace
+
+bool Shadows::View::ends(const Vec3& beam, const Vec3& beside, double step) const {
+  constexpr double kTowards = 0.5;  // cosine
+  const double level = std::hypot(beam.x(), beam.y());
+  const auto is_last = [&](const std::optional<double>& end, double up) {
+    return end && *end - std::asin(up * beam.z()) < step && up * beside.z() > kTowards * level;
+  };
+  return is_last(lowest, -1.0) || is_last(highest, 1.0);
+}
 
 Shadows::Shadows(const OrderedPoints& cloud) : cloud_(cloud) {
   std::map<std::array<double, 3>, std::vector<std::uint32_t>> seen;
@@ -39,7 +75,8 @@ Shadows::Shadows(const OrderedPoints& cloud) : cloud_(cloud) {
     for (const std::uint32_t i : points) {
       beams.push_back((cloud.position(i) - scanner).normalized());
     }
-    views_.emplace(key, View{std::move(points), spatial::KdTree(beams)});
+    views_.emplace(key, View{std::move(points), spatial::KdTree(beams), end_of_beams(beams, -1.0),
+                             end_of_beams(beams, 1.0)});
   }
 }
 
@@ -53,6 +90,7 @@ bool Shadows::hide_what_is_beyond(std::size_t point, const Vec3& outward, double
   const Vec3 beside = (outward - outward.dot(beam) * beam).normalized();
   std::vector<spatial::Neighbour> near;
   view.beams.nearest(beam, kBeams, near);
+  if (view.ends(beam, beside, std::sqrt(near.back().sq_distance))) return true;
   std::vector<double> ranges;  // of the beams beside the point, the nearest first
   for (const spatial::Neighbour& one : near) {
     const Vec3 other = cloud_.position(view.points[one.index]) - scanner;
