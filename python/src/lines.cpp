@@ -69,7 +69,7 @@ py::tuple find_lines(const Array<double>& xyz, bool is_float32,
       given.p_sharp.assign(points.p_sharp.begin(), points.p_sharp.end());
       given.p_smooth.assign(points.p_smooth.begin(), points.p_smooth.end());
       fewer = of_averages(made, std::move(given));
-      points.scanners = {};
+      points.scanners = made.scanners;
       points.classes = fewer.classes;
       points.p_sharp = fewer.p_sharp;
       points.p_smooth = fewer.p_smooth;

@@ -20,6 +20,7 @@ constexpr double kJump = 3.0;         // times the difference to the beams beyon
 // Of the ends of beams below and above a scanner; heights are sines.
 constexpr std::size_t kFewStray = 10, kShareOfStray = 2000;  // beams beyond the last row
 constexpr double kSteep = 0.64, kPole = 0.9999;              // 40 and 89 degrees
+constexpr double kSteepAbove = 0.966;  // 75 degrees: the eaves around a court are lower
 constexpr double kLastRows = 0.03;
 constexpr std::size_t kSectors = 36;
 constexpr std::ptrdiff_t kMostSectors = 24;  // that a part of a turn may see
@@ -40,7 +41,7 @@ std::optional<double> end_of_beams(std::span<const Vec3> beams, double up) {
                  [&](const Vec3& beam) { return -up * beam.z(); });
   const std::size_t stray = std::max(kFewStray, beams.size() / kShareOfStray);
   const double end = -value_at_rank(heights, std::min(stray, beams.size() - 1));
-  if (end < kSteep || end > kPole) return std::nullopt;
+  if (end < (up > 0.0 ? kSteepAbove : kSteep) || end > kPole) return std::nullopt;
   std::array<bool, kSectors> sees = {};
   for (const Vec3& beam : beams) {
     if (up * beam.z() < end - kLastRows) continue;
