@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "pcednet/core/median.h"
 #include "pcednet/detect/averages.h"
@@ -116,8 +115,7 @@ std::optional<WithoutPoles> without_poles(std::span<const Vec3> positions,
 std::string note_on(const WithoutPoles& thinned) {
   return fmt::format(
       "{} points crowd above and below scanners, where their rows meet: left out, with the labels "
-      "of "
-      "those beside them",
+      "of those beside them",
       thinned.crowded);
 }
 
