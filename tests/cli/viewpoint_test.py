@@ -21,6 +21,17 @@ def panel_scan(step=0.008):
     return PLACE + ranges[:, None] * beams
 
 
+def room_scan():
+    """A room of 6 by 6 by 3 from its middle, in equal steps of both angles."""
+    columns, rows = np.linspace(0, 2 * np.pi, 400, endpoint=False), -1.2 + 0.018 * np.arange(150)
+    turn, up = (a.ravel() for a in np.meshgrid(columns, rows))
+    beams = np.c_[np.cos(up) * np.cos(turn), np.cos(up) * np.sin(turn), np.sin(up)]
+    with np.errstate(divide="ignore"):
+        ranges = np.min([3.0, 3.0, 1.5] / abs(beams), axis=1)
+    ranges += 0.006 * np.random.default_rng(4).normal(size=len(ranges))
+    return [100, 50, 1.5] + ranges[:, None] * beams
+
+
 class Viewpoint(CliTest):
     def setUp(self):
         super().setUp()
@@ -75,19 +86,43 @@ class Viewpoint(CliTest):
                   scan=np.repeat([0, 1], len(p)))
         self.check_tiles("two.ply")
 
-    def test_scanners_that_differ_between_inputs_are_not_kept(self):
-        for name, x in ("a.ply", 20), ("b.ply", 30):
-            write_ply(self.folder / name, panel_scan(0.03) + [x - 20, 0, 0], position_type="double",
-                      comments=[f"scanner 0: {x} 10 1.7"])
-        inputs = (self.folder / "a.ply", self.folder / "b.ply")
-        plan, tile = self.folder / "p.json", self.folder / "p_tiles" / "0.ply"
-        done = run("tiles", "plan", *inputs, "-o", plan)
-        self.assertIn("differ in where their scanners stood", done.stderr)
-        run("tiles", "run", plan)
-        self.assertNotIn(b"comment scanner", tile.read_bytes())
-        run("tiles", "plan", *inputs, "-o", plan, "--viewpoint", 1, 2, 3, "--overwrite")
-        run("tiles", "run", plan)
-        self.assertIn(b"comment scanner 0: 1 2 3\n", tile.read_bytes())
+    def test_tiles_take_the_scanners_of_each_file(self):
+        """Two files of a scan each, and one that names no scanner, as the cloud that has them all."""
+        p = panel_scan(0.012)
+        clouds = p, (2 * PLACE + [16.05, 0, 0]) - p * [1, 1, -1] - [0, 0, 2 * PLACE[2]], p + [0, 30, 0]
+        scanners = ["scanner 0: 20 10 1.7"], ["scanner 0: 36.05 10 1.7"], []
+        for name, cloud, comments in zip("abc", clouds, scanners):
+            write_ply(self.folder / f"{name}.ply", cloud, position_type="double", comments=comments)
+        write_ply(self.folder / "all.ply", np.vstack(clouds), position_type="double",
+                  comments=["scanner 0: 20 10 1.7", "scanner 1: 36.05 10 1.7"], scan=np.repeat([0, 1, 2], len(p)))
+        plan, joined = self.folder / "p.json", self.folder / "joined.ply"
+        rows = {}
+        for inputs, what in (["all.ply"], "one"), (["a.ply", "b.ply", "c.ply"], "three"):
+            paths = [self.folder / name for name in inputs]
+            done = run("tiles", "plan", *paths, "-o", plan, "--tile", 5, "--overwrite")
+            self.assertEqual("3 scans, numbered by `scan`" in done.stderr, what == "three")
+            run("tiles", "run", plan, "--overwrite")
+            run("tiles", "join", plan, "-o", joined, "--overwrite")
+            self.assertEqual(re.findall(rb"comment scanner.*", joined.read_bytes()),
+                             [b"comment scanner 0: 20 10 1.7", b"comment scanner 1: 36.05 10 1.7"])
+            rows[what] = sorted_rows(joined)
+        self.assertEqual(set(rows["three"]["scan"]), {0, 1, 2})
+        for column in "scan", "scalar_edge_class", "nx":
+            np.testing.assert_array_equal(rows["three"][column], rows["one"][column])
+
+    def test_tiles_leave_out_the_crowds_above_scanners(self):
+        write_ply(self.folder / "room.ply", room_scan(), position_type="double", comments=["scanner 0: 100 50 1.5"])
+        run("classify", self.folder / "room.ply", "-o", self.folder / "whole.ply")
+        done = run("tiles", "plan", self.folder / "room.ply", "-o", self.folder / "p.json", "--tile", 3)
+        self.assertIn("points crowd above and below scanners", done.stderr)
+        run("tiles", "run", self.folder / "p.json")
+        run("tiles", "join", self.folder / "p.json", "-o", self.folder / "joined.ply")
+        whole, joined = (sorted_rows(self.folder / name) for name in ("whole.ply", "joined.ply"))
+        self.assertGreater(np.mean(joined["scalar_edge_class"] == whole["scalar_edge_class"]), 0.9995)
+        beams = np.c_[joined["x"], joined["y"], joined["z"]] - [100, 50, 1.5]
+        above = beams[:, 2] > 0.95 * np.linalg.norm(beams, axis=1)
+        self.assertGreater(np.sum(above), 100)
+        self.assertLess(np.mean(abs(joined["nz"][above]) < 0.8), 0.02)
 
     def test_is_for_one_scan(self):
         write_ply(self.folder / "two.ply", panel_scan(0.05), scan=np.zeros(180))

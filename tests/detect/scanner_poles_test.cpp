@@ -22,7 +22,7 @@ constexpr double kRowAngle = 2.7 / kRows;
 struct Scan {
   std::vector<Vec3> positions, scanners;
 
-  std::optional<WithoutPoles> thinned() const {
+  WithoutPoles thinned() const {
     return without_poles(positions, scanners, spatial::curve_order(positions));
   }
 };
@@ -61,13 +61,13 @@ double wrong_above(const PreparedCloud& prepared) {
 
 TEST(ScannerPoles, LoseTheirCrowds) {
   const Scan scan = scan_of_room(0.003);
-  const auto thinned = scan.thinned();
-  ASSERT_TRUE(thinned);
-  EXPECT_GT(thinned->crowded, scan.positions.size() / 40);
-  EXPECT_LT(thinned->crowded, scan.positions.size() / 8);
-  EXPECT_EQ(thinned->crowded, scan.positions.size() - thinned->positions.size());
+  const WithoutPoles thinned = scan.thinned();
+  EXPECT_TRUE(thinned.are_many());
+  EXPECT_GT(thinned.crowded, scan.positions.size() / 40);
+  EXPECT_LT(thinned.crowded, scan.positions.size() / 8);
+  EXPECT_EQ(thinned.crowded, scan.positions.size() - thinned.kept.size());
   for (std::size_t i = 0; i < scan.positions.size(); ++i) {
-    const Vec3& kept = thinned->positions[thinned->average_of[i]];
+    const Vec3& kept = scan.positions[thinned.kept[thinned.average_of[i]]];
     if (kept == scan.positions[i]) continue;
     const Vec3 beam = beam_to(scan.positions[i]);
     EXPECT_GT(std::abs(beam.z()), std::sin(std::numbers::pi / 3.0) - 1e-3);
@@ -78,7 +78,7 @@ TEST(ScannerPoles, LoseTheirCrowds) {
 TEST(ScannerPoles, DoNotDependOnTheOrderOfPoints) {
   Scan scan = scan_of_room(0.003);
   const auto positions_of = [](const Scan& of) {
-    std::vector<Vec3> kept = of.thinned()->positions;
+    std::vector<Vec3> kept = spatial::in_order(of.positions, of.thinned().kept);
     std::sort(kept.begin(), kept.end(), [](const Vec3& a, const Vec3& b) {
       return std::tuple(a.x(), a.y(), a.z()) < std::tuple(b.x(), b.y(), b.z());
     });
@@ -92,15 +92,15 @@ TEST(ScannerPoles, DoNotDependOnTheOrderOfPoints) {
 TEST(ScannerPoles, AreLeftAloneWithoutCrowds) {
   Scan scan = scan_of_room(0.003);
   scan.scanners.assign(scan.positions.size(), Vec3::Constant(NAN));
-  EXPECT_FALSE(scan.thinned());  // nobody knows where it stood
+  EXPECT_FALSE(scan.thinned().are_many());  // nobody knows where it stood
   Random random(5);
   for (Vec3& position : scan.positions) {  // without rows
     position = uniform_vector(random, kScanner + Vec3(-3, -3, 1.5), kScanner + Vec3(3, 3, 1.5));
   }
   scan.scanners.assign(scan.positions.size(), kScanner);
-  EXPECT_FALSE(scan.thinned());
+  EXPECT_FALSE(scan.thinned().are_many());
   scan.positions.resize(3), scan.scanners.resize(3);
-  EXPECT_FALSE(scan.thinned());
+  EXPECT_FALSE(scan.thinned().are_many());
 }
 
 TEST(ScannerPoles, GetTheNormalsOfTheCeiling) {

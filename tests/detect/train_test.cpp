@@ -135,7 +135,7 @@ TEST(TrainEdges, NamesAMissingClassByItsLabel) {
     PointCloud poor = cloud;
     std::replace(poor.labels.begin(), poor.labels.end(), std::uint8_t{without},
                  std::uint8_t{kUnlabelled});
-    const auto error = test::error_of([&] { train_on(poor, quick(classes)); });
+    const auto error = test::error_of([&, classes = classes] { train_on(poor, quick(classes)); });
     ASSERT_TRUE(error);
     EXPECT_EQ(error->kind(), ErrorKind::kInsufficient);
     EXPECT_STREQ(error->what(), said);

@@ -22,8 +22,9 @@ class PlanFile : public testing::Test, protected test::OwnFolder {
 
   Plan some_plan() const {
     Plan plan{.version = kVersion};
-    plan.inputs = {{folder_ / "in/a.laz", 1234, true, {{50000, 0, {{0, 1, 2}, {3, 4, 5.1}}, "d1"}}},
-                   {"/elsewhere/b.laz", 99, false, {{10, 10, {}, "d2"}, {1, 0, {}, "d3"}}}};
+    plan.inputs = {
+        {folder_ / "in/a.laz", 1234, true, 0, 1, {{50000, 0, {{0, 1, 2}, {3, 4, 5.1}}, "d1"}}},
+        {"/elsewhere/b.laz", 99, false, 1, 1, {{10, 10, {}, "d2"}, {1, 0, {}, "d3"}}}};
     plan.las_steps = {0.01, 0, 0.01, 0, 0.01, 0.1};
     plan.places = 50000;
     plan.box = {{0, 1, 2}, {3, 4, 0.1 + 0.2}};
@@ -32,7 +33,8 @@ class PlanFile : public testing::Test, protected test::OwnFolder {
     plan.scanners = {{1, 2, 3.1}, Vec3::Constant(NAN)};
     plan.s_min = 0.1, plan.s_max = 1.0 / 3.0;
     plan.normals = {
-        true, 48, 12, true, true, true, {0.01, {-1.0, 2.0, 0.5}, 0.04}, {0.02, {1.0, 2.0, 3.5}}};
+        true, 48, 12, true, true, true, {0.01, {-1.0, 2.0, 0.5}, 0.04}, {0.02, {1.0, 2.0, 3.5}},
+        true};
     plan.pyramids = {
         {{0, 1, 2}, 3.0, {{false, gls::Crowd::kKeep}, {true, gls::Crowd::kMergeByAxis}}},
         {{0, 1, 2}, 3.0, {{true, gls::Crowd::kKeep}, {false, gls::Crowd::kMerge}}}};
@@ -54,6 +56,9 @@ TEST_F(PlanFile, ComesBackAsItWas) {
   EXPECT_EQ(back.inputs[1].path, plan.inputs[1].path);
   EXPECT_EQ(back.inputs[0].bytes, 1234u);
   EXPECT_TRUE(back.inputs[0].narrow_colours);
+  EXPECT_EQ(back.inputs[0].first_scan, 0);
+  EXPECT_EQ(back.inputs[1].first_scan, 1);
+  EXPECT_EQ(back.inputs[1].scans, 1);
   EXPECT_EQ(back.inputs[0].chunks[0].box.max, plan.inputs[0].chunks[0].box.max);
   EXPECT_TRUE(back.inputs[1].chunks[0].box.empty());
   EXPECT_EQ(back.inputs[1].chunks[0].without_place, 10u);
@@ -71,6 +76,7 @@ TEST_F(PlanFile, ComesBackAsItWas) {
   EXPECT_EQ(back.s_max, 1.0 / 3.0);
   EXPECT_EQ(back.normals.neighbours, 48u);
   EXPECT_EQ(back.normals.fewest, 12u);
+  EXPECT_TRUE(back.normals.poles);
   EXPECT_EQ(back.normals.rounding.step, 0.01);
   EXPECT_EQ(back.normals.rounding.origin, Vec3(-1.0, 2.0, 0.5));
   EXPECT_EQ(back.normals.rounding.spacing, 0.04);

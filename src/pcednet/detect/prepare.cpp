@@ -4,24 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/half_space.h"
 #include "pcednet/core/parallel_loops.h"
 #include "pcednet/detect/exact_points.h"
-#include "pcednet/detect/far_points.h"
 #include "pcednet/detect/near_on_curve.h"
 #include "pcednet/detect/normal_fit.h"
+#include "pcednet/detect/points_used.h"
 #include "pcednet/detect/rounding.h"
-#include "pcednet/detect/scanner_poles.h"
-#include "pcednet/detect/thinned_cloud.h"
 #include "pcednet/normals/flat_pairs.h"
 #include "pcednet/normals/neighbour_count.h"
 #include "pcednet/normals/prepare.h"
-#include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {
 namespace {
@@ -39,18 +34,6 @@ constexpr std::size_t kMended = 4;
 constexpr std::size_t kShareToOrient = 50;
 
 constexpr double kMisfits = 0.5;  ///< share of flat places with wrong normals; true ones have none
-
-/// The parts of a cloud that are used.
-struct Points {
-  std::span<const Vec3> positions;
-  std::span<const Vec3> normals;                ///< may be empty
-  std::function<std::vector<Vec3>()> scanners;  ///< of every point, or of none
-  std::span<const Vec3> estimates = {};         ///< whose signs new ones take; may be empty
-
-  std::size_t size() const { return positions.size(); }
-  bool empty() const { return positions.empty(); }
-  bool has_normals() const { return !normals.empty(); }
-};
 
 struct Oriented {
   normals::PreparedNormals found;
@@ -159,68 +142,6 @@ void estimate(PreparedCloud& prepared, const Points& cloud, const std::string& w
   use(std::move(oriented), note, prepared);
 }
 
-/// Takes the position from points that are far from all others.
-void leave_out_far_points(PreparedCloud& prepared) {
-  const std::vector<std::uint32_t> far = far_points(prepared.positions);
-  if (far.empty()) return;
-  prepared.notes.push_back(note_on_far(far, prepared.positions));
-  prepared.moved.assign(prepared.positions.begin(), prepared.positions.end());
-  for (const std::uint32_t i : far) {
-    prepared.moved[i] = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-  }
-  prepared.positions = prepared.moved;
-}
-
-/// Puts the points with a position in order, of which there must be one.
-void order_finite_points(PreparedCloud& prepared) {
-  leave_out_far_points(prepared);
-  prepared.curve = spatial::curve_order(prepared.positions);
-  const std::size_t points = prepared.positions.size(), finite = prepared.curve.size();
-  if (finite == 0) throw Error(ErrorKind::kInsufficient, "no point has a finite position");
-  if (finite == points) return;
-  prepared.notes.push_back(fmt::format("{} of {} points have no finite position: kept, unlabelled",
-                                       points - finite, points));
-}
-
-/// Puts these in place of the positions.
-void use_positions(std::vector<Vec3> positions, PreparedCloud& prepared) {
-  prepared.moved = std::move(positions);
-  prepared.positions = prepared.moved;
-  prepared.curve = spatial::curve_order(prepared.positions);
-}
-
-/// The parts of the cloud that are used then.
-Points use_averages(ThinnedCloud&& thinned, PreparedCloud& prepared) {
-  prepared.decision.averaging = thinned.averaging;
-  prepared.average_of = std::move(thinned.average_of);
-  use_positions(std::move(thinned.positions), prepared);
-  return {prepared.positions, {}, [] { return std::vector<Vec3>(); }};
-}
-
-/// The points to use: fewer where noise is thick, or at the poles of scanners.
-Points averaged(const Points& cloud, PreparedCloud& prepared, const Progress* progress) {
-  if (auto thinned = thin_noise(prepared.positions, prepared.curve, progress)) {
-    prepared.notes.push_back(note_on(*thinned));
-    return use_averages(std::move(*thinned), prepared);
-  }
-  const std::vector<Vec3> scanners = cloud.scanners();
-  if (scanners.empty()) return cloud;
-  auto thinned = without_poles(prepared.positions, scanners, prepared.curve, progress);
-  if (!thinned) return cloud;
-  prepared.notes.push_back(note_on(*thinned));
-  prepared.scanners = std::move(thinned->scanners);
-  prepared.average_of = std::move(thinned->average_of);
-  use_positions(std::move(thinned->positions), prepared);
-  return {prepared.positions, {}, [&prepared] { return prepared.scanners; }};
-}
-
-/// Spreads rounded positions.
-void spread_positions(const Rounding& rounding, PreparedCloud& prepared) {
-  if (rounding.step == 0.0) return;
-  use_positions(spread(prepared.positions, rounding), prepared);
-  prepared.notes.push_back(note_on(rounding));
-}
-
 /// Of the points in order. They are counted as they lie in memory.
 std::size_t count_usable(const PreparedCloud& prepared) {
   return count_where(prepared.normals.size(), [&](std::size_t i) {
@@ -320,13 +241,7 @@ void orient_mixed(PreparedCloud& prepared, const Points& cloud, const Progress* 
 void carry_out(const NormalsDecision& decision, const Points& cloud, PreparedCloud& prepared,
                const Progress* progress) {
   prepared.decision = decision;
-  Points used = cloud;
-  if (decision.averaging.deviation > 0.0) {
-    used = use_averages(
-        thin_as_decided(prepared.positions, prepared.curve, decision.averaging, progress),
-        prepared);
-  }
-  spread_positions(decision.rounding, prepared);
+  const Points used = points_as_decided(cloud, prepared, progress);
   if (decision.made) estimate(prepared, used, "normals as decided", progress);
   if (prepared.normals.empty()) {
     throw Error(ErrorKind::kUsage,
@@ -346,8 +261,9 @@ PreparedCloud prepare_points(const Points& cloud, const PrepareOptions& options,
     carry_out(*options.decided, cloud, prepared, progress);
     return prepared;
   }
-  const Points used =
-      options.average_noise && !cloud.has_normals() ? averaged(cloud, prepared, progress) : cloud;
+  const Points used = options.average_noise && !cloud.has_normals()
+                          ? fewer_points(cloud, prepared, progress)
+                          : cloud;
   estimate_missing(prepared, used, why_estimated(prepared, cloud), progress);
   if (prepared.made.empty()) note_misfits(prepared);
   if (prepared.made.empty() && !options.keep_orientation) orient_mixed(prepared, cloud, progress);

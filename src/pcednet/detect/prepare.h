@@ -37,6 +37,7 @@ struct NormalsDecision {
   bool exact = false;          ///< normals were missing, and the points are without noise
   Rounding rounding = {};      ///< of the positions, where normals were missing
   Averaging averaging = {};    ///< the same, before all else
+  bool poles = false;          ///< crowds at the poles of scanners are left out, see averages.h
 };
 
 /// The comment of a cloud whose normals are all estimated from its positions, by this program.

@@ -86,10 +86,12 @@ void leave_out_crowd(const Pole& pole, std::vector<std::uint32_t>& stands_for) {
 
 }  // namespace
 
-std::optional<WithoutPoles> without_poles(std::span<const Vec3> positions,
-                                          std::span<const Vec3> scanners,
-                                          std::span<const std::uint32_t> curve,
-                                          const Progress* progress) {
+bool WithoutPoles::are_many() const {
+  return crowded > 0 && crowded * kLeastShare >= kept.size() + crowded;
+}
+
+WithoutPoles without_poles(std::span<const Vec3> positions, std::span<const Vec3> scanners,
+                           std::span<const std::uint32_t> curve, const Progress* progress) {
   std::vector<std::uint32_t> stands_for(positions.size(), kNoAverage);
   for (const std::uint32_t i : curve) stands_for[i] = i;
   for (const Pole& pole : find_poles(positions, scanners, curve)) {
@@ -100,11 +102,10 @@ std::optional<WithoutPoles> without_poles(std::span<const Vec3> positions,
   std::vector<std::uint32_t> number(positions.size(), kNoAverage);
   for (std::uint32_t i = 0; i < stands_for.size(); ++i) {
     if (stands_for[i] != i) continue;
-    number[i] = static_cast<std::uint32_t>(found.positions.size());
-    found.positions.push_back(positions[i]), found.scanners.push_back(scanners[i]);
+    number[i] = static_cast<std::uint32_t>(found.kept.size());
+    found.kept.push_back(i);
   }
-  found.crowded = curve.size() - found.positions.size();
-  if (found.crowded * kLeastShare < curve.size()) return std::nullopt;
+  found.crowded = curve.size() - found.kept.size();
   found.average_of.assign(positions.size(), kNoAverage);
   for (std::size_t i = 0; i < stands_for.size(); ++i) {
     if (stands_for[i] != kNoAverage) found.average_of[i] = number[stands_for[i]];

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <map>
@@ -187,10 +188,10 @@ void add_lost(const io::LasFile& first, const io::LasFile& file, std::vector<std
   const auto all_of = [](const io::LasFile& las) {
     std::vector<io::LasRecord> all = las.records;
     all.insert(all.end(), las.extended_records.begin(), las.extended_records.end());
-    // These were compared, or are written anew.
+    // These were compared, or are written anew, or are comments.
     std::erase_if(all, [](const io::LasRecord& r) {
       return r.user_id == io::kWktRecord.user_id || r.is(io::kExtraBytesRecord) ||
-             r.is(io::kLaszipRecord);
+             r.is(io::kLaszipRecord) || r.is(io::kCommentsRecord);
     });
     return all;
   };
@@ -218,6 +219,21 @@ void note_lost_records(const IndexedInput& first, std::vector<std::string> lost,
                   first.input.path.string(), fmt::join(lost, ", "), more ? ", ..." : ""));
 }
 
+/// Puts the scanners of input after input in the plan's list, an unknown one for inputs without.
+void join_scanners(std::vector<IndexedInput>& inputs, Plan& plan) {
+  for (IndexedInput& input : inputs) {
+    std::vector<Vec3>& its = input.outline.scanners;
+    if (its.empty()) its.push_back(Vec3::Constant(NAN));
+    input.input.first_scan = static_cast<std::int32_t>(plan.scanners.size());
+    input.input.scans = static_cast<std::int32_t>(its.size());
+    plan.scanners.insert(plan.scanners.end(), its.begin(), its.end());
+    std::erase_if(input.columns, [](const auto& column) { return column.starts_with("scan ("); });
+  }
+  plan.notes.push_back(fmt::format(
+      "{} scans, numbered by `scan` in the tiles, with the scanners that the inputs name",
+      plan.scanners.size()));
+}
+
 }  // namespace
 
 void check_agreement(const std::vector<IndexedInput>& inputs, Plan& plan) {
@@ -243,25 +259,26 @@ void check_agreement(const std::vector<IndexedInput>& inputs, Plan& plan) {
   note_lost_records(first, std::move(lost), plan);
 }
 
-void choose_scanners(const std::vector<IndexedInput>& inputs, const std::optional<Vec3>& viewpoint,
+void choose_scanners(std::vector<IndexedInput>& inputs, const std::optional<Vec3>& viewpoint,
                      Plan& plan) {
   const std::vector<Vec3>& first = inputs.front().outline.scanners;
-  bool differ = false;
+  bool differ = false, any = false;
   for (const IndexedInput& input : inputs) {
+    const std::vector<Vec3>& its = input.outline.scanners;
     if (viewpoint && io::has_several_scans(input.outline)) {
       throw Error(ErrorKind::kUsage,
                   fmt::format("{}: is of several scans, and one scanner saw all points",
                               input.input.path.string()));
     }
-    differ = differ || !io::are_same(input.outline.scanners, first);
+    differ = differ || !io::are_same(its, first);
+    any = any || std::any_of(its.begin(), its.end(), [](const Vec3& at) { return at.allFinite(); });
   }
   if (viewpoint) {
     plan.scanners = {*viewpoint};
   } else if (!differ) {
     plan.scanners = first;
-  } else {
-    plan.notes.emplace_back(
-        "the inputs differ in where their scanners stood: none is used, nor kept");
+  } else if (any) {
+    join_scanners(inputs, plan);
   }
 }
 

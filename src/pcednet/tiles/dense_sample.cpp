@@ -13,6 +13,7 @@
 #include "pcednet/core/parallel_loops.h"
 #include "pcednet/detect/estimates.h"
 #include "pcednet/detect/rounding.h"
+#include "pcednet/detect/scanner_poles.h"
 #include "pcednet/detect/thinned_cloud.h"
 #include "pcednet/gls/fast_scale_space.h"
 #include "pcednet/gls/scales.h"
@@ -176,20 +177,36 @@ DenseSample read_dense_sample(const SampledPoints& sample, Plan& plan, const Pro
   return all;
 }
 
-detect::Averaging average_noise(const detect::PrepareOptions& options, DenseSample& dense,
-                                Plan& plan, const Progress* progress) {
+Thinning thin(const detect::PrepareOptions& options, DenseSample& dense, Plan& plan,
+              const Progress* progress) {
   PointCloud& cloud = dense.cloud;
   if (uses_normals(cloud, options)) return {};
+  const std::size_t points = cloud.size();
+  const std::string whose = whose_notes(points, dense.is_all);
   const auto curve = spatial::curve_order(cloud.positions);
-  auto thinned = detect::thin_noise(cloud.positions, curve, progress);
-  if (!thinned) return {};
-  plan.notes.push_back(whose_notes(cloud.size(), dense.is_all) + note_on(*thinned));
-  dense.share = static_cast<double>(thinned->positions.size()) / static_cast<double>(cloud.size());
-  const ScalarType type = cloud.position_type;
-  cloud = {};
-  cloud.positions = std::move(thinned->positions);
-  cloud.position_type = type;
-  return thinned->averaging;
+  Thinning thinning;
+  if (auto thinned = detect::thin_noise(cloud.positions, curve, progress)) {
+    plan.notes.push_back(whose + note_on(*thinned));
+    thinning.averaging = thinned->averaging;
+    const ScalarType type = cloud.position_type;
+    cloud = {};
+    cloud.positions = std::move(thinned->positions);
+    cloud.position_type = type;
+  } else if (const std::vector<Vec3> scanners = scanner_of_points(cloud); !scanners.empty()) {
+    const auto found = detect::without_poles(cloud.positions, scanners, curve, progress);
+    // In a sample of cubes the rows beside a pole may be missing: tiles find them.
+    thinning.poles = found.are_many() || !dense.is_all;
+    if (!found.are_many()) return thinning;
+    plan.notes.push_back(whose + note_on(found));
+    PointCloud kept;
+    kept.position_type = cloud.position_type;
+    kept.comments = cloud.comments;
+    kept.scanners = cloud.scanners;
+    append_surface(cloud, found.kept, kept);
+    cloud = std::move(kept);
+  }
+  dense.share = static_cast<double>(cloud.size()) / static_cast<double>(points);
+  return thinning;
 }
 
 void decide_voxels(const PreparedSample& sample, const detect::EdgeModel& model, Plan& plan,

@@ -16,17 +16,23 @@ struct DenseSample {
   PointCloud cloud = {};  ///< positions and normals only
   bool is_all = false;
   std::vector<BoundingBox> cubes = {};  ///< none if it is all
-  double share = 1.0;  ///< of the points that were read: fewer where they are averaged
+  double share = 1.0;  ///< of the points that were read: fewer where they are thinned
 };
 
 /// All points where the sample holds all; the cubes are around positions of the sample. Of results
 /// that lost their comments, the plan learns whether their normals are estimates.
 DenseSample read_dense_sample(const SampledPoints& sample, Plan& plan, const Progress* progress);
 
-/// Puts averages in place of points in thick noise, as prepare() does with average_noise for a
-/// cloud in memory, and notes it. The plan gets the decision by decide_normals().
-detect::Averaging average_noise(const detect::PrepareOptions& options, DenseSample& dense,
-                                Plan& plan, const Progress* progress);
+/// Why a sample has fewer points than were read.
+struct Thinning {
+  detect::Averaging averaging = {};
+  bool poles = false;
+};
+
+/// Puts averages in place of points in thick noise, or leaves out crowds at the poles of scanners,
+/// as prepare() does with average_noise for a cloud in memory, and notes it.
+Thinning thin(const detect::PrepareOptions& options, DenseSample& dense, Plan& plan,
+              const Progress* progress);
 
 /// A dense sample, ready for description. It must outlive this.
 struct PreparedSample {

@@ -131,12 +131,27 @@ std::unique_ptr<io::PartReader> open_planned(const PlannedInput& input) {
   return reader;
 }
 
+/// Gives the points of an input the numbers of their scans in the plan's list, -1 if unknown.
+void number_scans(const PlannedInput& input, PointCloud& part) {
+  std::vector<std::int32_t> scans(part.size(), input.scans == 1 ? input.first_scan : -1);
+  if (const Attribute* own = find_attribute(part, "scan")) {
+    for (std::size_t i = 0; i < scans.size(); ++i) {
+      const double scan = own->value(i);
+      const bool is_known = scan >= 0.0 && scan < static_cast<double>(input.scans);
+      scans[i] = is_known ? input.first_scan + static_cast<std::int32_t>(scan) : -1;
+    }
+    erase_attribute(part, "scan");
+  }
+  part.attributes.push_back(make_attribute("scan", scans));  // last, where the others have none
+}
+
 /// Throws Error(kUnreadable) if the chunk has changed since the plan.
 PointCloud read_chunk(const io::PartReader& reader, const PlannedInput& input, std::size_t chunk) {
   PointCloud part = reader.read(chunk);
   if (digest_of(part) != input.chunks[chunk].digest) {
     changed(input.path, fmt::format("other points in chunk {}", chunk));
   }
+  if (input.scans > 0) number_scans(input, part);
   return finished(std::move(part));
 }
 

@@ -62,17 +62,18 @@ std::vector<BoundingBox> inner_parts(std::vector<BoundingBox> cubes,
 Spacing measure(const SampledPoints& sample, const DenseSample& dense,
                 const PreparedSample& prepared, const Plan& plan, const gls::ScaleRange& given,
                 CellCounts& counts, const Progress* progress) {
-  const detect::Averaging& averaging = plan.normals.averaging;
-  const bool averaged = averaging.deviation > 0.0;
+  const detect::NormalsDecision& normals = plan.normals;
+  const bool averaged = normals.averaging.deviation > 0.0;
+  const bool thinned = averaged || (normals.poles && sample.is_all);
   if (sample.is_all) {
     counts.add(sample.positions);
     counts.add_without_place(plan.points() - sample.positions.size());
   } else if (averaged) {
     stream_points(plan, "count", progress, [&](auto positions) { counts.add(positions); });
   }
-  if (!averaged) return find_spacing(sample, plan, given, counts, progress);
+  if (!thinned) return find_spacing(sample, plan, given, counts, progress);
   const std::vector<Vec3> described = spatial::in_order(prepared.positions, prepared.curve);
-  const std::vector<BoundingBox> inner = inner_parts(dense.cubes, averaging);
+  const std::vector<BoundingBox> inner = inner_parts(dense.cubes, normals.averaging);
   return find_spacing({described, true, inner}, plan, given, counts, progress);
 }
 
@@ -256,8 +257,8 @@ Sample index_inputs(const PlanRequest& request, Plan& plan, const Progress* prog
                 fmt::format("the inputs have no point with a finite position up to {:g}",
                             detect::kSuspectCoordinate));
   }
-  check_agreement(indexed, plan);
   choose_scanners(indexed, request.viewpoint, plan);
+  check_agreement(indexed, plan);
   choose_las_steps(indexed, plan);
   for (IndexedInput& input : indexed) plan.inputs.push_back(std::move(input.input));
   note_copies(plan);
@@ -280,10 +281,11 @@ std::size_t count_places(std::span<const Vec3> positions) {
 PreparedSample prepare_sample(const PlanRequest& request, const detect::EdgeModel& model,
                               DenseSample& dense, Plan& plan, const Progress* progress) {
   const detect::PrepareOptions options = {.keep_orientation = request.keep_orientation};
-  detect::Averaging averaging;
-  if (detect::averages_noise(model)) averaging = average_noise(options, dense, plan, progress);
+  Thinning thinning;
+  if (detect::averages_noise(model)) thinning = thin(options, dense, plan, progress);
   PreparedSample prepared = decide_normals(dense, options, plan, progress);
-  plan.normals.averaging = averaging;
+  plan.normals.averaging = thinning.averaging;
+  plan.normals.poles = thinning.poles;
   plan.places = static_cast<std::size_t>(dense.share * static_cast<double>(plan.places));
   return prepared;
 }

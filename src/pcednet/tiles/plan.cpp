@@ -99,15 +99,18 @@ std::string text_of(const PlannedInput& input, const Paths& paths) {
         to_text(Json{chunk.points, chunk.without_place, json_of(chunk.box), chunk.digest}));
   }
   return fmt::format(
-      "{{\"path\":{},\"bytes\":{},\"points\":{},\"narrow_colours\":{},\"chunks\":{}}}",
+      "{{\"path\":{},\"bytes\":{},\"points\":{},\"narrow_colours\":{},\"scans\":[{},{}],"
+      "\"chunks\":{}}}",
       to_text(Json(paths.written(input.path))), input.bytes, input.points(), input.narrow_colours,
-      json_lines(chunks, "   "));
+      input.first_scan, input.scans, json_lines(chunks, "   "));
 }
 
 PlannedInput input_of(const Json& j, const Paths& paths) {
   PlannedInput input{.path = paths.read(j.at("path")),
                      .bytes = j.at("bytes"),
                      .narrow_colours = j.at("narrow_colours"),
+                     .first_scan = j.at("scans").at(0),
+                     .scans = j.at("scans").at(1),
                      .chunks = {}};
   for (const Json& chunk : j.at("chunks")) {
     input.chunks.push_back({.points = chunk.at(0),
@@ -157,6 +160,7 @@ Json normals_of(const Plan& plan) {
           {"spacing", rounding.spacing},
           {"averaged_noise", averaging.deviation},
           {"averaged_about", json_of(averaging.middle)},
+          {"without_poles", normals.poles},
           {"unmarked_estimates", plan.estimates}};
 }
 
@@ -168,7 +172,8 @@ detect::NormalsDecision normals_in(const Json& j) {
           j.at("exact_planes"),
           j.at("exact"),
           {j.at("rounded_to"), vec3_of(j.at("rounded_from")), j.at("spacing")},
-          {j.at("averaged_noise"), vec3_of(j.at("averaged_about"))}};
+          {j.at("averaged_noise"), vec3_of(j.at("averaged_about"))},
+          j.at("without_poles")};
 }
 
 Json json_of(const gls::PyramidPlan& pyramid) {
@@ -256,6 +261,15 @@ Plan plan_of(const Json& j, const Paths& paths, std::string& member) {
   return plan;
 }
 
+/// Whether the scanners of inputs are in the plan's list.
+bool are_sound(const std::vector<PlannedInput>& inputs, const Plan& plan) {
+  return std::all_of(inputs.begin(), inputs.end(), [&](const PlannedInput& input) {
+    return input.first_scan >= 0 && input.scans >= 0 &&
+           static_cast<std::size_t>(input.first_scan) + static_cast<std::size_t>(input.scans) <=
+               plan.scanners.size();
+  });
+}
+
 /// Whether a plan may have such pyramids; how many levels there are depends on the model.
 bool are_sound(const std::vector<gls::PyramidPlan>& pyramids, const Plan& plan) {
   if (pyramids.empty() || pyramids.size() > gls::kOctaves) return false;
@@ -282,12 +296,11 @@ std::string unsound_member(const Plan& plan) {
   if (!(0.0 < plan.s_min && plan.s_min < plan.s_max)) return "scales";
   if (!are_sound(plan.pyramids, plan)) return "pyramids";
   if (plan.normals.neighbours == 1 || plan.normals.neighbours > 10'000) return "normals";
-  if (!is_length(averaging.deviation) || (averaging.deviation > 0.0 && !plan.normals.made)) {
-    return "normals";
-  }
+  const bool thins = plan.normals.poles || averaging.deviation > 0.0;
+  if (!is_length(averaging.deviation) || (thins && !plan.normals.made)) return "normals";
   if (plan.memory == 0) return "memory";
   if (!plan.las_steps.empty() && plan.las_steps.size() != 6) return "las_steps";
-  if (plan.inputs.empty()) return "inputs";
+  if (plan.inputs.empty() || !are_sound(plan.inputs, plan)) return "inputs";
   if (plan.tiles.empty()) return "tiles";
   return "";
 }

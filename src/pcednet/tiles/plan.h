@@ -27,6 +27,9 @@ struct PlannedInput {
   std::filesystem::path path;
   std::uint64_t bytes = 0;
   bool narrow_colours = false;  ///< see io::PartReader
+  /// Where each input has scanners of its own: the first of them in the plan's list, and how many;
+  /// otherwise 0, and points have the attribute `scan` that the file gives them, if any.
+  std::int32_t first_scan = 0, scans = 0;
   std::vector<Chunk> chunks;
 
   std::size_t points() const;
@@ -57,7 +60,7 @@ struct Plan {
   /// Scale and offset of x, y and z in the tiles, where all inputs are LAS or LAZ; otherwise empty.
   std::vector<double> las_steps = {};
   BoundingBox box = {};  ///< of all points with a place
-  /// As in PointCloud: that of the request, or those that all inputs tell.
+  /// As in PointCloud: that of the request, or those of the inputs.
   std::vector<Vec3> scanners = {};
   /// Distinct places of points; of more than 2,000,000 points, all those with a place. The maximum
   /// of few points that count as a piece of a larger cloud.

@@ -57,8 +57,8 @@ void add_core(const PointCloud& core, PointCloud& all) {
   detect::set_estimated_normals(all, detect::declares_estimated_normals(core));
 }
 
-/// Of `prepared`, all points that decide in the core, whose points come first unless they are
-/// averaged.
+/// Of `prepared`, all points that decide in the core, whose points come first unless others stand
+/// for them.
 detect::PartOfCloud part_of(const Plan& plan, std::size_t tile, std::size_t core,
                             const PointCloud& all, const detect::PreparedCloud& prepared) {
   detect::PartOfCloud part{.pyramids = plan.pyramids, .points = plan.places, .wanted = {}};
@@ -69,6 +69,10 @@ detect::PartOfCloud part_of(const Plan& plan, std::size_t tile, std::size_t core
   part.wanted.assign(positions.size(), 1);
   for (std::size_t i = prepared.is_averaged() ? 0 : core; i < positions.size(); ++i) {
     part.wanted[i] = near.holds(positions[i]) ? 1 : 0;
+  }
+  for (std::size_t i = 0; i < core && prepared.is_averaged(); ++i) {
+    const std::uint32_t its = prepared.average_of[i];
+    if (its != detect::kNoAverage) part.wanted[its] = 1;
   }
   return part;
 }
