@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "pcednet/core/error.h"
+#include "pcednet/io/text_scan.h"
 
 #ifdef PCEDNET_WITH_PROJ
 #include <proj.h>
