@@ -73,6 +73,61 @@ TEST(Shadows, OfAScannerThatIsNotKnownAreBoundaries) {
   EXPECT_EQ(scan.lengths(unknown).shadow, scan.lengths({}).shadow);
 }
 
+/// A column of radius .4 or, instead, a flat panel of that half width at a slant of 75 degrees, 2
+/// high and 6 before the scanner.
+struct UprightScan {
+  Vec3 scanner = {10.0, 20.0, 1.5};
+  std::vector<Vec3> positions = {}, normals = {};
+
+  explicit UprightScan(bool is_column) {
+    constexpr double kStep = 0.006, kRadius = 0.4;
+    const Vec3 slanted(std::cos(1.31), std::sin(1.31), 0.0), along(-slanted.y(), slanted.x(), 0.0);
+    Random random(23);
+    for (double up = -0.24; up < 0.08; up += kStep) {
+      for (double turn = -0.1; turn < 0.1; turn += kStep) {
+        const Vec3 level(std::cos(turn), std::sin(turn), 0.0);
+        const double across = 6.0 * level.y();
+        if (is_column && std::abs(across) >= kRadius) continue;
+        const double range = is_column
+                                 ? 6.0 * level.x() - std::sqrt(kRadius * kRadius - across * across)
+                                 : 6.0 * slanted.x() / slanted.dot(level);
+        const Vec3 at = range * level - Vec3(6.0, 0.0, 0.0);
+        if (!is_column && std::abs(at.dot(along)) > kRadius) continue;
+        positions.push_back(scanner + range * (1.0 + 3e-4 * random.normal()) *
+                                          (level + std::tan(up) * Vec3::UnitZ()));
+        normals.push_back(is_column ? Vec3(at.normalized()) : slanted);
+      }
+    }
+  }
+
+  /// The length of upright boundaries.
+  double length(bool is_told) const {
+    const std::vector<std::uint8_t> classes(positions.size(), kNonEdge);
+    std::vector<Vec3> scanners;
+    if (is_told) scanners.assign(positions.size(), scanner);
+    const EdgePoints points = {
+        .positions = positions, .normals = normals, .classes = classes, .scanners = scanners};
+    double length = 0.0;
+    for (const Curve& curve : find_lines(points, {.boundaries = true})) {
+      const Vec3 whole = curve.points.back() - curve.points.front();
+      if (std::abs(whole.z()) > 0.9 * whole.norm()) length += length_of(curve);
+    }
+    return length;
+  }
+};
+
+TEST(Shadows, OfTheColumnThatCastsThemAreNoBoundariesOfIt) {
+  const UprightScan column(true);
+  EXPECT_GT(column.length(false), 3.0);
+  EXPECT_LT(column.length(true), 0.2);
+}
+
+TEST(Shadows, AreNotTheEndsOfAPanelSeenAslant) {
+  const UprightScan panel(false);
+  EXPECT_GT(panel.length(false), 3.0);
+  EXPECT_EQ(panel.length(true), panel.length(false));
+}
+
 /// Level ground around a scanner that sees nothing more than 60 degrees below it.
 EdgePoints ground_around(const Vec3& scanner, double from_turn, std::vector<Vec3>& positions,
                          std::vector<Vec3>& normals, std::vector<std::uint8_t>& classes) {

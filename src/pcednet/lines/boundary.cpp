@@ -58,7 +58,7 @@ std::optional<Crease> boundary_at(const OrderedPoints& cloud, const Shadows& sha
                               [&](std::uint32_t j) -> const Vec3& { return cloud.position(j); })) {
     return std::nullopt;
   }
-  if (shadows.hide_what_is_beyond(i, outward, spacing)) return std::nullopt;
+  if (shadows.are_why_it_ends(i, outward, spacing)) return std::nullopt;
   const Vec3 along = normal.cross(outward);
   double last = 0.0;
   for (const auto& near : nearest) {

@@ -16,6 +16,8 @@ constexpr std::size_t kBeams = 28;    // up to three steps of the scanner away
 constexpr std::size_t kLeast = 4;     // of these beside the point
 constexpr double kBefore = 6.0;       // spacings
 constexpr double kJump = 3.0;         // times the difference to the beams beyond
+constexpr double kAslant = 0.5;       // of a normal to the beam, a cosine
+constexpr double kTurn = 0.05;        // of these cosines, within three steps
 
 // Of the ends of beams below and above a scanner; heights are sines.
 constexpr std::size_t kFewStray = 10, kShareOfStray = 2000;  // beams beyond the last row
@@ -81,28 +83,57 @@ Shadows::Shadows(const OrderedPoints& cloud) : cloud_(cloud) {
   }
 }
 
-bool Shadows::hide_what_is_beyond(std::size_t point, const Vec3& outward, double spacing) const {
+bool Shadows::turns_away(std::size_t point, const View& view,
+                         std::span<const std::uint32_t> inside) const {
+  const Vec3 scanner = cloud_.scanner(point);
+  const auto facing = [&](std::size_t i) {
+    return std::abs(cloud_.normal(i).dot((cloud_.position(i) - scanner).normalized()));
+  };
+  const double its = facing(point);
+  if (its > kAslant || inside.size() < kLeast) return false;
+  std::vector<double> theirs;
+  for (const std::uint32_t one : inside) {
+    const std::uint32_t i = view.points[one];
+    if (cloud_.edge_class(i) == kSharpEdge) return false;  // the other face of a post
+    theirs.push_back(facing(i));
+  }
+  return median_of(theirs) > its + kTurn;
+}
+
+bool Shadows::lies_in_shadow(std::size_t point, const View& view,
+                             std::span<const std::uint32_t> beyond, double spacing) const {
+  if (beyond.size() < kLeast) return false;
+  const Vec3 scanner = cloud_.scanner(point);
+  std::vector<double> ranges;
+  for (const std::uint32_t one : beyond) {
+    ranges.push_back((cloud_.position(view.points[one]) - scanner).norm());
+  }
+  const std::span<const double> all = ranges;
+  const double first = median_of(all.first(all.size() / 2));
+  const double second = median_of(all.subspan(all.size() / 2));
+  const double range = (cloud_.position(point) - scanner).norm();
+  return range - first > std::max(kBefore * spacing, kJump * std::abs(first - second));
+}
+
+bool Shadows::are_why_it_ends(std::size_t point, const Vec3& outward, double spacing) const {
   const Vec3 scanner = cloud_.scanner(point), offset = cloud_.position(point) - scanner;
   const auto found = views_.find(key_of(scanner));
   if (!scanner.allFinite() || found == views_.end() || offset.isZero(0.0)) return false;
   const View& view = found->second;
-  const double range = offset.norm();
-  const Vec3 beam = offset / range;
+  const Vec3 beam = offset.normalized();
   const Vec3 beside = (outward - outward.dot(beam) * beam).normalized();
   std::vector<spatial::Neighbour> near;
   view.beams.nearest(beam, kBeams, near);
   if (view.ends(beam, beside, std::sqrt(near.back().sq_distance))) return true;
-  std::vector<double> ranges;  // of the beams beside the point, the nearest first
+  std::vector<std::uint32_t> beyond, inside;  // of the beams beside the point, the nearest first
   for (const spatial::Neighbour& one : near) {
     const Vec3 other = cloud_.position(view.points[one.index]) - scanner;
     const double along = beside.dot(other.normalized() - beam);
-    if (along > 0.0 && along * along > 0.5 * one.sq_distance) ranges.push_back(other.norm());
+    if (along * along > 0.5 * one.sq_distance) {
+      (along > 0.0 ? beyond : inside).push_back(one.index);
+    }
   }
-  if (ranges.size() < kLeast) return false;
-  const std::span<const double> all = ranges;
-  const double first = median_of(all.first(all.size() / 2));
-  const double beyond = median_of(all.subspan(all.size() / 2));
-  return range - first > std::max(kBefore * spacing, kJump * std::abs(first - beyond));
+  return turns_away(point, view, inside) || lies_in_shadow(point, view, beyond, spacing);
 }
 
 }  // namespace pcednet::lines
