@@ -35,7 +35,7 @@ TEST(Ptx, MovesTheGridOfAScanAndLeavesEmptyCellsOut) {
   ASSERT_EQ(loaded.cloud.scanners.size(), 1u);
   EXPECT_EQ(loaded.cloud.scanners[0], Vec3(100, 200, 3));
   ASSERT_EQ(loaded.warnings.size(), 1u);
-  EXPECT_EQ(loaded.warnings[0], "1 cells at 0 0 0 hold no point: left out");
+  EXPECT_EQ(loaded.warnings[0], "1 cell at 0 0 0 holds no point: left out");
 }
 
 TEST(Ptx, JoinsScansOfOtherFields) {

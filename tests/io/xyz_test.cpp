@@ -182,8 +182,13 @@ TEST(Xyz, TellsProseFromNames) {
 
 std::string guess(std::size_t columns, const std::vector<double>& numbers,
                   TextKind kind = TextKind::kAny) {
+  NumberTable table(columns);
+  for (auto row = numbers.begin(); row != numbers.end();
+       row += static_cast<std::ptrdiff_t>(columns)) {
+    std::copy_n(row, columns, table.add_row());
+  }
   std::string joined;
-  for (const std::string& name : guess_column_names({numbers, columns}, kind)) {
+  for (const std::string& name : guess_column_names(table, kind)) {
     joined += (joined.empty() ? "" : " ") + name;
   }
   return joined;

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "pcednet/io/cloud_builder.h"
+#include "pcednet/io/file_lines.h"
+#include "pcednet/io/number_table.h"
 #include "pcednet/io/ptx.h"
 #include "pcednet/io/scanners.h"
 #include "pcednet/io/text_scan.h"
@@ -39,7 +41,7 @@ constexpr std::size_t kIntensity = 3, kColour = 4;
 class PtxReader {
  public:
   explicit PtxReader(const InputFile& file)
-      : path_(file.path()), text_(in_utf8(file.text())), lines_(without_mark(text_)) {}
+      : path_(file.path()), bytes_(file.size()), lines_(file) {}
 
   LoadedCloud read() {
     std::vector<PtxScan> scans;
@@ -86,8 +88,7 @@ class PtxReader {
     std::string_view line;
     if (!lines_.next_filled(line)) throw error("ends before the number of rows");
     scan.rows = count(line, "rows");
-    const std::uint64_t most = text_.size();  // each cell is a line
-    if (scan.rows > 0 && scan.columns > most / scan.rows) {
+    if (scan.rows > 0 && scan.columns > bytes_ / scan.rows) {  // each cell is a line
       throw error(fmt::format("declares {} columns of {} rows, more than the file holds",
                               scan.columns, scan.rows));
     }
@@ -110,7 +111,7 @@ class PtxReader {
                                 number, scan.columns, scan.rows, cell));
       }
       take_point(line, scan);
-      scan_of_point_.resize(numbers_.size() / kWidth, static_cast<std::int32_t>(number));
+      scan_of_point_.resize(table_.rows(), static_cast<std::int32_t>(number));
     }
   }
 
@@ -137,7 +138,7 @@ class PtxReader {
     std::copy_n(place.data(), 3, row.begin());
     has_intensities_ = has_intensities_ || has_intensity;
     scan.has_points = true, scan.has_colours = scan.has_colours || has_colour;
-    numbers_.insert(numbers_.end(), row.begin(), row.end());
+    std::copy(row.begin(), row.end(), table_.add_row());
   }
 
   LoadedCloud build(const std::vector<PtxScan>& scans) {
@@ -150,12 +151,13 @@ class PtxReader {
     columns[kIntensity].skip = !has_intensities_;
     for (std::size_t c = kColour; c < kWidth; ++c) columns[c].skip = with_colours == 0;
     CloudBuilder builder(path_, columns, scan_of_point_.size());
-    builder.fill_rows(reinterpret_cast<const std::byte*>(numbers_.data()), 0,
-                      scan_of_point_.size());
+    table_.move_to(builder);
     LoadedCloud loaded = builder.finish();
     if (scans.size() > 1) set_attribute(loaded.cloud, make_attribute("scan", scan_of_point_));
     if (empty_ > 0) {
-      loaded.warnings.push_back(fmt::format("{} cells at 0 0 0 hold no point: left out", empty_));
+      loaded.warnings.push_back(fmt::format(
+          "{} at 0 0 0 hold{} no point: left out",
+          empty_ == 1 ? "1 cell" : fmt::format("{} cells", empty_), empty_ == 1 ? "s" : ""));
     }
     if (with_colours > 0 && with_colours < with_points) {
       loaded.warnings.push_back(
@@ -166,10 +168,10 @@ class PtxReader {
   }
 
   const std::filesystem::path& path_;
-  std::string text_;
-  Lines lines_;
+  std::uint64_t bytes_;
+  FileLines lines_;
   std::vector<std::string_view> words_;
-  std::vector<double> numbers_;  ///< kWidth of each point
+  NumberTable table_{kWidth};
   std::vector<std::int32_t> scan_of_point_;
   std::size_t empty_ = 0;  ///< cells
   bool has_intensities_ = false;

@@ -11,7 +11,7 @@ namespace {
 template <typename Predicate>
 bool in_all_rows(const NumberTable& table, Predicate&& holds) {
   for (std::size_t r = 0; r < table.rows(); ++r) {
-    if (!holds(table.numbers.data() + r * table.columns)) return false;
+    if (!holds(table.row(r))) return false;
   }
   return table.rows() > 0;
 }
@@ -19,7 +19,7 @@ bool in_all_rows(const NumberTable& table, Predicate&& holds) {
 bool are_normals(const NumberTable& table, std::size_t first) {
   std::size_t unit = 0;
   for (std::size_t r = 0; r < table.rows(); ++r) {
-    if (looks_like_normal(table.numbers.data() + r * table.columns + first)) ++unit;
+    if (looks_like_normal(table.row(r) + first)) ++unit;
   }
   return unit > 0 && 10 * unit >= 9 * table.rows();
 }
@@ -48,19 +48,19 @@ bool looks_like_normal(const double* n) {
 }
 
 bool counts_rows(const NumberTable& table) {
-  double next = table.rows() > 3 ? std::floor(table.numbers[0]) : NAN;
+  double next = table.rows() > 3 ? std::floor(*table.row(0)) : NAN;
   return in_all_rows(table, [&](const double* row) { return row[0] == next++; });
 }
 
 std::vector<std::string> guess_column_names(const NumberTable& table, TextKind kind) {
   std::vector<std::string> names = {"x", "y", "z"};
   bool has_normals = false, has_colours = false;
-  while (names.size() < table.columns) {
+  while (names.size() < table.columns()) {
     const std::size_t next = names.size();
-    const std::size_t left = table.columns - next;
+    const std::size_t left = table.columns() - next;
     // x y z intensity r g b, the usual .pts: four columns of which three are colours either way.
     const bool is_counted = kind == TextKind::kCountedPts;
-    const bool may_be_label = !is_counted && is_label(table, table.columns - 1);
+    const bool may_be_label = !is_counted && is_label(table, table.columns() - 1);
     const bool scalar_first = left == 4 && are_colours(table, next + 1) && !may_be_label;
     const bool is_alone = left == 1 && !may_be_label;
     if (kind != TextKind::kAny && next == 3 && (scalar_first || is_alone)) {

@@ -4,15 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "pcednet/io/number_table.h"
+
 namespace pcednet::io {
-
-/// The numbers of a text, row by row.
-struct NumberTable {
-  std::vector<double> numbers;
-  std::size_t columns = 0;
-
-  std::size_t rows() const { return columns == 0 ? 0 : numbers.size() / columns; }
-};
 
 /// Whether the vector at `n` has about unit length.
 bool looks_like_normal(const double* n);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "pcednet/io/cloud_builder.h"
+#include "pcednet/io/file_lines.h"
 #include "pcednet/io/text_scan.h"
 #include "pcednet/io/xyz.h"
 #include "pcednet/io/xyz_commas.h"
@@ -50,22 +51,21 @@ bool begin_with_numbers(const std::vector<std::string_view>& words) {
 
 class TableReader {
  public:
-  explicit TableReader(const InputFile& file) : path_(file.path()), text_(in_utf8(file.text())) {}
+  explicit TableReader(const InputFile& file) : path_(file.path()), lines_(file) {}
 
   LoadedCloud read() {
-    Lines lines(without_mark(text_));
     std::string_view line;
-    while (lines.next(line)) {
+    while (lines_.next(line)) {
       line = trim(line);
       if (line.empty()) continue;
-      number_ = lines.number();
+      number_ = lines_.number();
       if (quoted_ && !is_comment(line)) line = plain_ = without_quotes(line);
       if (is_comment(line)) {
         take_comment(trim(line.substr(std::min(line.find_first_not_of("#/"), line.size()))));
-      } else if (table_.columns > 0) {
+      } else if (table_.columns() > 0) {
         take_row(line);
       } else {
-        take_first(line, lines);
+        take_first(line);
       }
     }
     if (promised_ && *promised_ != table_.rows()) {
@@ -80,7 +80,7 @@ class TableReader {
 
   void take_comment(std::string_view comment) {
     std::vector<std::string> names = split_names(comment);
-    if (table_.columns == 0 && names_.empty() && name_positions(names)) {
+    if (table_.columns() == 0 && names_.empty() && name_positions(names)) {
       names_ = std::move(names);
       naming_comment_ = comment;
     } else {
@@ -88,8 +88,8 @@ class TableReader {
     }
   }
 
-  /// A line before the first point: a count, names, or the first point; `after`: the lines behind.
-  void take_first(std::string_view line, const Lines& after) {
+  /// A line before the first point: a count, names, or the first point.
+  void take_first(std::string_view line) {
     split(line, words_, kNumberSeparators);
     if (take_count()) return;
     const bool is_number = !words_.empty() && parse_double(words_[0]).has_value();
@@ -101,7 +101,7 @@ class TableReader {
           "expected numbers, or names of columns with x, y and z (easting, northing and height) "
           "among them");
     }
-    decide_on_commas(line, after);
+    decide_on_commas(line);
     split_row(line);
     if (words_.size() - empty_words() < 3) throw error("expected at least three numbers");
     if (words_.size() > kMostColumns) {
@@ -118,7 +118,7 @@ class TableReader {
     if (!names_.empty() && names_.size() != words_.size()) {
       throw error(fmt::format("{} numbers under {} names", words_.size(), names_.size()));
     }
-    table_.columns = words_.size();
+    table_ = NumberTable(words_.size());
     take_row(line);
   }
 
@@ -132,24 +132,33 @@ class TableReader {
     return true;
   }
 
-  /// The first unambiguous line decides for the file.
-  void decide_on_commas(std::string_view line, Lines after) {
-    std::size_t number = number_, unclear = 0;
+  /// From the first line with commas on, the first unambiguous one decides for the file.
+  void decide_on_commas(std::string_view line) {
+    if (commas_ != Commas::kNone) return;
+    if (line.find(',') == std::string_view::npos) {
+      if (line_with_point_ == 0 && line.find('.') != line.npos) line_with_point_ = number_;
+      return;
+    }
+    FileLines after = lines_;
+    deciding_line_ = number_;
     do {
       line = trim(line);
-      const Commas found = is_comment(line) ? Commas::kNone : commas_of(line);
-      if (found == Commas::kUnclear && unclear == 0) unclear = number;
-      if (found == Commas::kDecimals || found == Commas::kSeparators) {
-        commas_ = found;
-        deciding_line_ = number;
-        return;
-      }
-    } while (after.next(line) && (number = after.number()) > 0);
-    if (unclear == 0) return;
-    number_ = unclear;
-    throw error(
-        "these commas may be decimal or stand between numbers: separate the numbers by semicolons, "
-        "or write decimal points");
+      commas_ = is_comment(line) ? Commas::kNone : commas_of(line);
+      if (commas_ == Commas::kDecimals || commas_ == Commas::kSeparators) break;
+      deciding_line_ = after.next(line) ? after.number() : 0;
+    } while (deciding_line_ != 0);
+    if (deciding_line_ == 0) {
+      throw error(
+          "these commas may be decimal or stand between numbers: separate the numbers by "
+          "semicolons, or write decimal points");
+    }
+    if (commas_ == Commas::kSeparators || line_with_point_ == 0) return;
+    number_ = line_with_point_;
+    throw decimal_points();
+  }
+
+  Error decimal_points() const {
+    return error(fmt::format("decimal points, where line {} has decimal commas", deciding_line_));
   }
 
   void split_row(std::string_view line) {
@@ -174,9 +183,9 @@ class TableReader {
         throw error(is_english ? "commas and decimal points: write no commas between thousands"
                                : "points and decimal commas: write no points between thousands");
       }
-      throw error(fmt::format("{}, where line {} has decimal commas",
-                              has_points ? "decimal points" : "commas between numbers",
-                              deciding_line_));
+      if (has_points) throw decimal_points();
+      throw error(
+          fmt::format("commas between numbers, where line {} has decimal commas", deciding_line_));
     }
     if (commas_ == Commas::kSeparators && here == Commas::kDecimals) {
       throw error(
@@ -193,21 +202,23 @@ class TableReader {
   }
 
   void take_row(std::string_view line) {
+    decide_on_commas(line);
     check_commas(line);
     split_row(line);
     if (promised_ && take_count()) return;
-    if (words_.size() == table_.columns + 1 && words_.back().empty()) words_.pop_back();
-    if (words_.size() != table_.columns) {
+    if (words_.size() == table_.columns() + 1 && words_.back().empty()) words_.pop_back();
+    if (words_.size() != table_.columns()) {
       throw error(fmt::format("{} number{} where the lines before have {}", words_.size(),
-                              words_.size() == 1 ? "" : "s", table_.columns));
+                              words_.size() == 1 ? "" : "s", table_.columns()));
     }
     const std::size_t empty = empty_words();
     if (empty == words_.size()) return;  // as spreadsheets end a table
     empty_ += empty;
+    double* next = table_.add_row();
     for (const std::string_view word : words_) {
       const auto number = number_of(word);
       if (!number) throw error(number_fault(word));
-      table_.numbers.push_back(*number);
+      *next++ = *number;
     }
   }
 
@@ -218,17 +229,18 @@ class TableReader {
     for (std::size_t c = 0; c < names_.size(); ++c) {
       columns.push_back({names_[c].empty() ? fmt::format("scalar_{}", c + 1) : names_[c]});
     }
+    const bool is_numbered = guessed && counts_rows(table_);
     CloudBuilder builder(path_, columns, table_.rows());
-    builder.fill_rows(reinterpret_cast<const std::byte*>(table_.numbers.data()), 0, table_.rows());
+    table_.move_to(builder);
     LoadedCloud loaded = builder.finish();
     loaded.cloud.comments = std::move(comments_);
     if (empty_ > 0) {
       loaded.warnings.push_back(
           fmt::format("{} numbers are missing between separators: read as nan", empty_));
     }
-    if (guessed && table_.columns > 3) {
+    if (guessed && table_.columns() > 3) {
       loaded.warnings.push_back(fmt::format("no column names: read as {}{}", fmt::join(names_, " "),
-                                            counts_rows(table_)
+                                            is_numbered
                                                 ? ", although the first column numbers the points; "
                                                   "give names, such as: id x y z"
                                                 : ""));
@@ -242,7 +254,7 @@ class TableReader {
   }
 
   const std::filesystem::path& path_;
-  std::string text_;
+  FileLines lines_;
   std::size_t number_ = 0;
   std::vector<std::string> names_;
   std::string naming_comment_;  ///< the comment that the names come from, if they do
@@ -253,7 +265,8 @@ class TableReader {
   std::optional<std::uint64_t> promised_;
   Commas commas_ = Commas::kNone;  ///< those of all lines
   std::size_t deciding_line_ = 0;
-  std::size_t empty_ = 0;  ///< numbers that are missing
+  std::size_t line_with_point_ = 0;  ///< the first, before commas
+  std::size_t empty_ = 0;            ///< numbers that are missing
   NumberTable table_;
 };
 
