@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "pcednet/cloud/class_table.h"
 #include "pcednet/core/error.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/io/las/copc.h"

@@ -1,5 +1,6 @@
 #include "pcednet/detect/acute_edge.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
