@@ -64,11 +64,11 @@ ResultTruth own_labels(const PointCloud& cloud) {
     return {.note = fmt::format("a result of pcednet: its labels are {}", unless)};
   }
   const bool by_classes = corrects_classes(cloud, classes);
-  const char* column = by_classes ? kResultColumns[0] : "label";
-  return {by_classes ? std::move(classes) : cloud.labels,
+  if (!by_classes) classes = cloud.labels;
+  return {std::move(classes),
           fmt::format("a result of pcednet: the labels are those of its column {}, which was "
                       "corrected",
-                      column)};
+                      by_classes ? kResultColumns[0] : "label")};
 }
 
 }  // namespace

@@ -106,12 +106,11 @@ double plane_share(const OrderedPoints& cloud, const Faces& faces, double spacin
   for (std::size_t f = 0; f < bends.size(); ++f) {
     const Bend& bend = bends[f];
     const auto count = static_cast<double>(faces.faces[f].count);
-    if (!faces.faces[f].is_curved) {
-      plane += count;
-    } else if (bend.count < kLeastInside) {
+    const bool is_curved = faces.faces[f].is_curved;
+    if (is_curved && bend.count < kLeastInside) {
       const bool is_own = angles[f] > kOwnAngle && angles[f] < std::numbers::pi;
       (is_own ? plane : undecided) += count;
-    } else if (bend.variance() < kFlat * kFlat ||
+    } else if (!is_curved || bend.variance() < kFlat * kFlat ||
                bend.explained() < kMostBend + kByChance / bend.count ||
                bend.turn() < std::min(kFaceTurn, kFaceTurnOfAngle * angles[f])) {
       plane += count;

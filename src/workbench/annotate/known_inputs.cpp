@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 fs::path place_of_input(const fs::path& project, std::span<const InputIdentity> known,
                         std::size_t number, const fs::path& folder) {
-  const fs::path place = formats::find_written((folder / known[number].name).lexically_normal());
+  fs::path place = formats::find_written((folder / known[number].name).lexically_normal());
   std::error_code ignored;
   if (fs::is_regular_file(place, ignored)) return place;
   const std::string what =

@@ -44,7 +44,7 @@ fs::path journal_of(fs::path project) {
 }
 
 Inputs inputs_of_project(const fs::path& project) {
-  if (const Inputs known = inputs_of_journal(journal_of(project)); !known.empty()) return known;
+  if (Inputs known = inputs_of_journal(journal_of(project)); !known.empty()) return known;
   return fs::exists(project) ? read_own_project(project).inputs : Inputs();
 }
 
