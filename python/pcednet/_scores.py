@@ -52,7 +52,8 @@ def evaluate(truth, predicted, positive="sharp"):
     Warns
     -----
     PcednetWarning
-        `truth` is a Cloud that was read from a result of pcednet.
+        `truth` is a Cloud that was read from a result of pcednet. With ``'sharp'``, `truth` or `predicted` has
+        smooth-edge points and no sharp-edge one, as where edges are marked by 1: scores are 0.
     """
     for one in (truth, predicted):
         if isinstance(one, Result):
@@ -76,4 +77,8 @@ def evaluate(truth, predicted, positive="sharp"):
     positive = _arrays.text(positive, "positive")
     if (truth == _arrays.UNLABELLED).all():
         raise InsufficientError("truth: no point is labelled")
-    return Scores(_core.evaluate(truth, predicted, positive))
+    scores = Scores(_core.evaluate(truth, predicted, positive))
+    for name, labels in (("truth", truth), ("predicted", predicted)):
+        note = _core.none_is_positive(*(int(np.count_nonzero(labels == edge)) for edge in (1, 2)), positive)
+        _arrays.warn([f"{name}: {note}"] if note else [])
+    return scores

@@ -24,9 +24,14 @@ py::dict evaluate(const Array<std::uint8_t>& truth, const Array<std::uint8_t>& p
   return result;
 }
 
+std::string none_is_positive(std::size_t smooth, std::size_t sharp, const std::string& positive) {
+  return eval::none_is_positive(smooth, sharp, named(eval::kPositives, "positive", positive));
+}
+
 }  // namespace
 
 void add_scores(py::module_& module) {
+  module.def("none_is_positive", none_is_positive);
   module.def("evaluate", evaluate);
 }
 

@@ -33,6 +33,20 @@ class Evaluate(CliTest):
             self.assertEqual(row["points"], 1000)
             self.assertEqual(report["pooled"]["mcc"], report["median"]["mcc"])
 
+    def test_says_that_edges_marked_by_one_are_not_counted(self):
+        p, n, label = cube(1000)
+        write_ply(self.folder / "a.ply", p, n, label)
+        (self.folder / "other").mkdir()
+        np.save(self.folder / "other" / "a.npy", (label == 2).astype(np.int64))
+        said = "none is sharp-edge (2): positive sharp counts 2 alone, positive edge both"
+        arguments = ("evaluate", self.folder / "a.ply", "--predictions", self.folder / "other")
+        self.assertIn(f"the predictions: {np.sum(label == 2)} points are smooth-edge (1), {said}", run(*arguments).stderr)
+        self.assertNotIn(said, run(*arguments, "--positive", "edge").stderr)
+        np.save(self.folder / "other" / "a.npy", label == 2)  # of a mask, true is sharp-edge
+        self.assertEqual(run(*arguments).stderr, "")
+        write_ply(self.folder / "a.ply", p, n, np.minimum(label, 1))
+        self.assertIn("the labels: ", run(*arguments).stderr)
+
     def test_tells_whether_probabilities_are_right(self):
         write_ply(self.folder / "a.ply", *cube(3000))
         done = run("evaluate", self.folder / "a.ply", "--model", "scan", "--positive", "edge",

@@ -104,6 +104,15 @@ TEST(Calibration, IsTheMeanDifferenceInTheBins) {
                add_calibration(truth, {p.data(), 3}, Positive::kEdge, edges));
 }
 
+TEST(Scores, SayThatEdgesMarkedByOneAreNotCounted) {
+  EXPECT_NE(none_is_positive(5, 0, Positive::kSharp).find("5 points are smooth-edge (1)"),
+            std::string::npos);
+  EXPECT_TRUE(none_is_positive(5, 1, Positive::kSharp).empty());
+  EXPECT_TRUE(none_is_positive(0, 0, Positive::kSharp).empty());
+  EXPECT_TRUE(none_is_positive(5, 0, Positive::kEdge).empty());
+  EXPECT_TRUE(none_is_positive(5, 0, Positive::kBoundary).empty());
+}
+
 TEST(EvaluationReport, TakesTheMedianOfEachScoreByItself) {
   const std::vector<CloudScore> clouds = {{"a", {.tp = 10, .fp = 3, .tn = 80, .fn = 7}},
                                           {"b", {.tp = 20, .fp = 9, .tn = 60, .fn = 1}},

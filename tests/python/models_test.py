@@ -333,6 +333,17 @@ class Scoring(unittest.TestCase):
             with self.assertRaisesRegex(pcednet.InsufficientError, said):
                 pcednet.evaluate(*arguments)
 
+    def test_edges_marked_by_one_are_a_warning(self):
+        mask = np.array([0, 1, 1, 0])
+        with self.assertWarnsRegex(pcednet.PcednetWarning, r"predicted: 2 points are smooth-edge \(1\), none is sharp-edge"):
+            self.assertEqual(pcednet.evaluate(2 * mask, mask).mcc, 0)
+        with self.assertWarnsRegex(pcednet.PcednetWarning, "truth: 2 points are smooth-edge"):
+            pcednet.evaluate(mask, 2 * mask)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertEqual(pcednet.evaluate(mask, mask, "edge").mcc, 1)
+            self.assertEqual(pcednet.evaluate(2 * mask, 2 * mask).mcc, 1)
+
     def test_a_result_may_be_the_truth(self):
         positions, normals, _ = cube(1000)
         result = pcednet.classify(positions, normals)

@@ -38,8 +38,14 @@ struct EvaluateArguments {
   bool calibration = false;
 };
 
+/// How many points are edges.
+struct Edges {
+  std::size_t smooth = 0, sharp = 0;
+};
+
 struct Results {
   std::vector<eval::CloudScore> scores;
+  Edges labelled, found;
   eval::Calibration calibration;
   eval::ClassReport classes;  ///< instead of both, with own classes
   std::string classes_from;   ///< what settled the table of the classes; empty: nothing yet
@@ -64,6 +70,17 @@ std::vector<float> probabilities(const detect::Classification& found, eval::Posi
     for (std::size_t i = 0; i < p.size(); ++i) p[i] += found.p_smooth[i];
   }
   return p;
+}
+
+void count_edges(std::span<const std::uint8_t> classes, Edges& edges) {
+  edges.smooth += static_cast<std::size_t>(std::ranges::count(classes, kSmoothEdge));
+  edges.sharp += static_cast<std::size_t>(std::ranges::count(classes, kSharpEdge));
+}
+
+/// Warns of labels or predictions that mark edges by 1, which score 0.
+void warn_of_edges(const char* whose, const Edges& edges, eval::Positive positive) {
+  const std::string note = eval::none_is_positive(edges.smooth, edges.sharp, positive);
+  if (!note.empty()) warn(fmt::format("{}: {}", whose, note));
 }
 
 /// How the classes of a cloud are found.
@@ -97,6 +114,8 @@ void score(const fs::path& input, const PointCloud& cloud, const detect::Classif
   if (has_own_classes(results.classes.table)) {
     return eval::add_cloud(cloud.labels, found.classes, results.classes);
   }
+  count_edges(cloud.labels, results.labelled);
+  count_edges(found.classes, results.found);
   results.scores.push_back(
       {formats::stem_of(input), eval::count_confusion(cloud.labels, found.classes, positive)});
   if (way.arguments.calibration) {
@@ -247,6 +266,8 @@ void evaluate(EvaluateArguments arguments, const Common& common) {
   if (arguments.json != "-") check_writable(arguments.json, common.overwrite());
   const Results results = score_all(arguments, common);
   const bool own = results.classes.clouds > 0;
+  warn_of_edges("the labels", results.labelled, arguments.positive);
+  warn_of_edges("the predictions", results.found, arguments.positive);
   if (own && arguments.calibration) {
     throw Error(ErrorKind::kUsage, "evaluate: --calibration is for edge classes");
   }

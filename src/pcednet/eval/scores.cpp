@@ -46,6 +46,14 @@ bool is_positive(std::uint8_t label, Positive positive) {
   return label == kBoundary;
 }
 
+std::string none_is_positive(std::size_t smooth, std::size_t sharp, Positive positive) {
+  if (positive != Positive::kSharp || sharp > 0 || smooth == 0) return {};
+  return fmt::format(
+      "{} points are smooth-edge (1), none is sharp-edge (2): positive sharp counts 2 alone, "
+      "positive edge both",
+      smooth);
+}
+
 ConfusionCounts& ConfusionCounts::operator+=(const ConfusionCounts& other) {
   tp += other.tp;
   fp += other.fp;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -30,6 +31,11 @@ inline constexpr std::array<std::pair<std::string_view, Positive>, 3> kPositives
     {{"sharp", Positive::kSharp}, {"edge", Positive::kEdge}, {"boundary", Positive::kBoundary}}};
 
 bool is_positive(std::uint8_t label, Positive positive);
+
+/// What to say of labels of which `smooth` are smooth-edge and `sharp` sharp-edge: that every score
+/// is 0 where sharp-edge alone is positive and none is one, as where a program marks its edges
+/// by 1. Otherwise empty.
+std::string none_is_positive(std::size_t smooth, std::size_t sharp, Positive positive);
 
 /// Compares the classes of every point; both spans have one class per point. A point whose truth is
 /// kUnlabelled is left out; a prediction other than an edge class counts as negative. Throws
