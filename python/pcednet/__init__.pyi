@@ -21,7 +21,7 @@ _Labels = ArrayLike | Mapping[Any, ArrayLike]
 _Set = Literal["default", "cad", "worn", "scan", "varied", "sparse", "drawn", "pieces",
                "lines", "sample"]
 _Positive = Literal["sharp", "edge", "boundary"]
-_Class = Literal["smooth", "sharp", "boundary"]
+_Class = Literal["smooth", "sharp", "boundary", "smooth-edge", "sharp-edge"]
 _Kind = Literal["segment", "arc", "circle", "polyline"]
 
 class _Bar(Protocol):

@@ -94,7 +94,7 @@ def class_number(name, names=EDGES):
 
 
 def labels(values, rows, name="labels", names=EDGES, strict=False):
-    """One class per point as (n,) uint8: from an array of classes (-1 and 255 are unlabelled), or
+    """One class per point as (n,) uint8: from an array of classes (-1, 255 and masked ones are unlabelled), or
     from a dict that gives the indices, or the mask, of the points of each class, each in one at most. `names` has the
     classes by number; uint8, which files have, may hold other numbers unless `strict`."""
     if isinstance(values, dict):
@@ -109,6 +109,8 @@ def labels(values, rows, name="labels", names=EDGES, strict=False):
                                  f"{called[int(array[twice[0]])]} and {called[number]}")
             array[points], given[points] = number, True
         return array
+    if isinstance(values, np.ma.MaskedArray):
+        values = values.filled(-1 if values.dtype.kind == "i" else UNLABELLED)
     array = numbers(values, name)
     if array.dtype == bool:
         raise UsageError(f"{name}: classes are needed, and a mask does not say which: "
@@ -150,6 +152,11 @@ def probabilities(values, rows, name):
     if array.shape != (rows,):
         raise UsageError(f"{name}: shape ({rows},) is needed, not {array.shape}")
     return np.require(array, np.float32, ["C", "A"])
+
+
+def check_result(result, rows):
+    if len(result.labels) != rows:
+        raise UsageError(f"a Result of {len(result.labels)} points, the cloud has {rows}")
 
 
 def thread_count(threads):

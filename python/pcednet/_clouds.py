@@ -90,6 +90,11 @@ class Cloud:
 
     def __getitem__(self, name):
         """The attribute `name`."""
+        if not isinstance(name, str):
+            raise TypeError(f"the name of an attribute is needed, not {type(name).__name__}; some points are "
+                            "cloud.select(points), their positions cloud.xyz[points]")
+        if name not in self.attributes:
+            raise KeyError(f"no attribute {name!r}: there are {', '.join(map(str, self.attributes)) or 'none'}")
         return self.attributes[name]
 
     def __setitem__(self, name, values):
@@ -225,7 +230,7 @@ def existing(path):
 
 
 def read(path):
-    """Read a point file: PLY, PCD, OBJ, STL, LAS, LAZ, COPC, E57 or text.
+    """Read a point file: PLY, PCD, OBJ, STL, LAS, LAZ, COPC, E57, PTX or text.
 
     Parameters
     ----------
@@ -343,8 +348,7 @@ def write(path, xyz, result=None, *, normals=None, colours=None, labels=None, at
         cloud = Cloud(xyz, normals, colours, labels, attributes)
     parts = None
     if result is not None:
-        if len(result.labels) != len(cloud):
-            raise UsageError(f"result: of {len(result.labels)} points, the cloud has {len(cloud)}")
+        _arrays.check_result(result, len(cloud))
         parts = result._parts()
     path, written = os.fspath(path), _parts_of(cloud)
     losses = _core.write(path, written, parts, bool(class_colours), bool(ascii), bool(overwrite))

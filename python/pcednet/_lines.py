@@ -10,6 +10,7 @@ from ._classify import Result, classify, worded
 from .errors import UsageError
 
 _SHORT = {1: "smooth", 2: "sharp", 3: "boundary"}
+_LONG = {"smooth-edge": "smooth", "sharp-edge": "sharp"}
 _KINDS = ("segment", "arc", "circle", "polyline")
 
 
@@ -103,7 +104,7 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     p_sharp, p_smooth : array_like, (n,), optional
         With an array of labels: probabilities, for the curves' confidences.
     classes : sequence of {'sharp', 'smooth', 'boundary'}
-        The classes to draw.
+        The classes to draw; ``'smooth-edge'`` and ``'sharp-edge'`` are possible, too.
     kinds : sequence of {'segment', 'arc', 'circle', 'polyline'}
     boundaries : bool
         Also draw where the surface ends, as on roofs.
@@ -131,7 +132,10 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     UsageError, InsufficientError, KeyboardInterrupt
         As :func:`classify`. A UsageError also for own classes without the edge classes.
     """
-    classes, kinds = _some(classes, _SHORT.values(), "classes"), _some(kinds, _KINDS, "kinds")
+    classes = _some(classes, _SHORT.values(), "classes", _LONG)
+    kinds = _some(kinds, _KINDS, "kinds")
+    if p_smooth is not None and p_sharp is None and not isinstance(xyz, _clouds.Cloud):
+        raise UsageError("p_smooth: p_sharp is needed with it")
     min_confidence = _arrays.share(min_confidence, "min_confidence")
     if labels is None and isinstance(xyz, _clouds.Cloud):
         labels = xyz._classes()
@@ -149,6 +153,7 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     rows = len(positions)
     prepared = isinstance(labels, Result)
     if prepared:
+        _arrays.check_result(labels, rows)
         _core.check_edges(labels.model._core.class_lines, "lines", False)
         positions = positions if labels._moved is None else _arrays.vectors(labels._moved, "positions", rows)
         # Averages of thick noise are made again, with normals of their own.
@@ -190,11 +195,12 @@ def _probability(cloud, name):
     return values
 
 
-def _some(names, known, what):
+def _some(names, known, what, longer=()):
+    """The names as a list; ``longer`` has other names of some."""
     names = [names] if isinstance(names, str) else list(names)
     if not names:
         raise UsageError(f"{what}: at least one of {', '.join(known)} is needed")
     for name in names:
-        if name not in known:
+        if name not in known and name not in tuple(longer):
             raise UsageError(f"{what}: {name!r}: there are {', '.join(known)}")
-    return names
+    return [longer[name] if name in tuple(longer) else name for name in names]

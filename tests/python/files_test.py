@@ -105,6 +105,11 @@ class Files(CliTest):
         cloud = pcednet.read(self.path("in.ply"))
         cloud["height"] = cloud.xyz[:, 2].astype(np.float32)
         cloud.normals = -2 * cloud.normals
+        with self.assertRaisesRegex(KeyError, "no attribute 'width': there are height"):
+            cloud["width"]
+        for points in (slice(5), labels == 2, 0):
+            with self.assertRaisesRegex(TypeError, r"some points are cloud.select\(points\)"):
+                cloud[points]
         part = cloud.select(cloud.labels == 2)
         pcednet.write(self.path("part.ply"), part)
         back = pcednet.read(self.path("part.ply"))

@@ -113,6 +113,26 @@ class Lines(CliTest):
         self.assertEqual(pcednet.lines(self.positions, np.zeros(12_000, np.uint8)), [])
         with self.assertRaises(pcednet.UsageError):
             pcednet.lines(self.positions, self.result.labels[1:])
+        with self.assertRaisesRegex(pcednet.UsageError, "a Result of 12000 points, the cloud has 100"):
+            pcednet.lines(self.positions[:100], self.result)
+        with self.assertRaisesRegex(pcednet.UsageError, "p_smooth: p_sharp is needed with it"):
+            pcednet.lines(self.positions, self.result.labels, p_smooth=self.result.p_smooth)
+
+    def test_masked_labels_are_unlabelled(self):
+        labels = self.result.labels
+        other = np.where(labels == pcednet.SMOOTH_EDGE, pcednet.UNLABELLED, labels)
+        expected = [curve.length for curve in pcednet.lines(self.positions, other, self.normals)]
+        for kind in (np.uint8, np.int8, np.int64, np.float32):
+            masked = np.ma.masked_equal(labels.astype(kind), pcednet.SMOOTH_EDGE)
+            found = pcednet.lines(self.positions, masked, self.normals)
+            self.assertEqual([curve.length for curve in found], expected, kind)
+
+    def test_classes_have_their_long_names_as_well(self):
+        for classes in ("sharp-edge", ["sharp-edge", "smooth"], ("smooth-edge",)):
+            short = [classes] if isinstance(classes, str) else classes
+            short = [name.removesuffix("-edge") for name in short]
+            self.assertEqual(len(pcednet.lines(self.positions, self.result, classes=classes)),
+                             len(pcednet.lines(self.positions, self.result, classes=short)))
 
     def test_notes_on_arrays_speak_of_no_file(self):
         with warnings.catch_warnings(record=True) as caught:
