@@ -130,6 +130,19 @@ class Scores:
     tn: int
     fn: int
 
+class LineScores:
+    lines: int
+    true_curves: int
+    cd: float
+    hd: float
+    precision_01: float
+    recall_01: float
+    precision_02: float
+    recall_02: float
+    found: float
+    pieces: float
+    corners: float
+
 class Model:
     name: str
     history: list[dict[str, Any]]
@@ -189,6 +202,9 @@ def train(clouds: _Points | Sequence[_Points], labels: _Labels | Sequence[_Label
           **descriptor: Any) -> Model: ...
 def evaluate(truth: ArrayLike | Result | Cloud, predicted: ArrayLike | Result | Cloud,
              positive: _Positive = "sharp") -> Scores: ...
+def evaluate_lines(truth: Sequence[Curve], predicted: Sequence[Curve],
+                   cloud: _Points | None = None) -> LineScores: ...
+def read_lines(path: _Path) -> Lines: ...
 def estimate_normals(xyz: _Points, normals: ArrayLike | None = None, *, neighbours: int = 0,
                      viewpoint: ArrayLike | None = None, threads: int = 0,
                      progress: _Progress = None) -> NDArray[np.float64]: ...

@@ -188,6 +188,29 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     return found
 
 
+def read_lines(path):
+    """Read the lines of an OBJ (``l``) or PLY (``edge``) file, each as a polyline.
+
+    Parameters
+    ----------
+    path : str or path-like
+
+    Returns
+    -------
+    Lines
+
+    Raises
+    ------
+    MissingFileError
+        There is no such file.
+    UnreadableError
+        It is truncated or of another format.
+    InsufficientError
+        It has points but no lines.
+    """
+    return Lines(_core.read_curves(_clouds.existing(path)))
+
+
 def _probability(cloud, name):
     values = cloud._scalar(name)
     if values is not None and not ((values >= 0) & (values <= 1)).all():

@@ -1,13 +1,27 @@
-"""Scores of labels."""
+"""Scores of labels and of lines."""
+
+import json
 
 import numpy as np
 
 from . import _arrays, _clouds, _core
 from ._classify import Result
-from .errors import InsufficientError
+from .errors import InsufficientError, UsageError
 
 
-class Scores:
+class _Values:
+    """Numbers by name."""
+
+    def __init__(self, values):
+        self.__dict__.update(values)
+
+    def __repr__(self):
+        return f"<{type(self).__name__}: " + ", ".join(
+            f"{name} {value:.3f}" if isinstance(value, float) else f"{name} {value}"
+            for name, value in self.__dict__.items()) + ">"
+
+
+class Scores(_Values):
     """The scores of Himeur et al. 2021, appendix B; one whose denominator is zero is 0.
 
     Attributes
@@ -16,13 +30,21 @@ class Scores:
     tp, fp, tn, fn : int
     """
 
-    def __init__(self, values):
-        self.__dict__.update(values)
 
-    def __repr__(self):
-        return "<Scores: " + ", ".join(
-            f"{name} {value:.3f}" if isinstance(value, float) else f"{name} {value}"
-            for name, value in self.__dict__.items()) + ">"
+class LineScores(_Values):
+    """The scores of lines of ``pcednet evaluate --truth``; lengths are relative to the cloud. A score that has no
+    value without lines is NaN.
+
+    Attributes
+    ----------
+    lines, true_curves : int
+    cd, hd : float
+        Mean squared and largest distances, both ways.
+    precision_01, recall_01, precision_02, recall_02 : float
+        Shares of the length within .01 and .02 of the other side.
+    found, pieces, corners : float
+        True curves that one line covers; lines on a true curve; F1 of ends and bends.
+    """
 
 
 def evaluate(truth, predicted, positive="sharp"):
@@ -82,3 +104,38 @@ def evaluate(truth, predicted, positive="sharp"):
         note = _core.none_is_positive(*(int(np.count_nonzero(labels == edge)) for edge in (1, 2)), positive)
         _arrays.warn([f"{name}: {note}"] if note else [])
     return scores
+
+
+def _curves(some, name):
+    curves = list(some) if not isinstance(some, _clouds.Cloud) else [some]
+    if not all(isinstance(one, _core.Curve) for one in curves):
+        raise UsageError(f"{name}: Lines, or a list of Curve, are needed; those of a file are pcednet.read_lines(path)")
+    return curves
+
+
+def evaluate_lines(truth, predicted, cloud=None):
+    """Score lines against true curves, of all classes on both sides.
+
+    Parameters
+    ----------
+    truth, predicted : Lines or sequence of Curve
+        As ``Cloud.curves`` of :func:`generate`, :func:`lines` and :func:`read_lines` give them.
+    cloud : array_like, (n, 3), or Cloud, optional
+        The points: lengths are relative to these, or else to the box of the true curves.
+
+    Returns
+    -------
+    LineScores
+
+    Raises
+    ------
+    UsageError
+        No curves of pcednet.
+    InsufficientError
+        No true curves, or points that all coincide.
+    """
+    points = None if cloud is None else _clouds.points_of(cloud)[0]
+    text = _core.score_lines(_curves(predicted, "predicted"), _curves(truth, "truth"), points)
+    scores = json.loads(text)["clouds"][0]
+    return LineScores({name: float("nan") if value is None else value
+                       for name, value in scores.items() if name != "name"})

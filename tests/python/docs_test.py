@@ -31,6 +31,7 @@ class Docs(unittest.TestCase):
         own.comments = [f"pcednet class {number} #00000{number} {name}"
                         for number, name in enumerate(("ground", "wall", "pipe"))]
         pcednet.write("site.ply", own)
+        pcednet.lines(positions, labels, normals).write("true.obj")
         self.names = {"xyz": positions, "other": pcednet.Cloud(positions, normals), "normals": normals, "other_xyz": positions + 5,
                       "picked": np.flatnonzero(labels == 2), "others": labels == 0,
                       "a": positions, "b": positions, "c": positions, "labels_a": labels,

@@ -1,5 +1,6 @@
 """pcednet.lines: the curves of the program, as objects and in files."""
 
+import json
 import unittest
 import warnings
 
@@ -189,6 +190,30 @@ class Lines(CliTest):
         self.assertEqual(longest[50:], [])
         self.lines[:2].write(self.path("two.geojson"))
         self.assertEqual(self.path("two.geojson").read_text().count("LineString"), 2)
+
+    def test_scores_are_those_of_the_program(self):
+        cloud = next(iter(pcednet.generate("lines", 3, "bracket_0")))
+        found = pcednet.lines(cloud)
+        pcednet.write(self.path("cloud.ply"), cloud)
+        found.write(self.path("found.obj"))
+        pcednet.Lines(cloud.curves).write(self.path("true.obj"))
+        ours, truth = pcednet.read_lines(self.path("found.obj")), pcednet.read_lines(self.path("true.obj"))
+        self.assertEqual((type(ours), len(ours)), (pcednet.Lines, len(found)))
+        for points, options in ((None, ()), (cloud, ("--cloud", self.path("cloud.ply")))):
+            done = run("evaluate", self.path("found.obj"), "--truth", self.path("true.obj"), "--json", "-", *options)
+            theirs = json.loads(done.stdout)["clouds"][0]
+            self.assertEqual(theirs.pop("name"), "found")
+            self.assertEqual(vars(pcednet.evaluate_lines(truth, ours, points)), theirs)
+        self.assertGreater(pcednet.evaluate_lines(cloud.curves, found, cloud.xyz).recall_02, 0.5)
+        nothing = pcednet.evaluate_lines(truth, [])
+        self.assertEqual((nothing.lines, nothing.found), (0, 0))
+        self.assertTrue(np.isnan(nothing.cd))
+        with self.assertRaises(pcednet.InsufficientError):
+            pcednet.evaluate_lines([], ours)
+        with self.assertRaisesRegex(pcednet.UsageError, r"pcednet.read_lines\(path\)"):
+            pcednet.evaluate_lines(truth, str(self.path("found.obj")))
+        with self.assertRaises(pcednet.MissingFileError):
+            pcednet.read_lines(self.path("absent.obj"))
 
     def test_the_coordinate_system_goes_along(self):
         found = pcednet.lines(self.positions, self.result)
