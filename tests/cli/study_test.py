@@ -97,6 +97,11 @@ class Study(CliTest):
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("t\udce4st/c\udcfcbe.ply: the set a has a cloud c\ufffdbe already", os.fsdecode(done.stderr))
 
+    def test_refuses_what_no_experiment_reads(self):
+        for option, value in (("--predictions", "x=out"), ("--models", "scan"), ("--fee", "a=1,2")):
+            done = run("study", "scales", "--test", f"a={self.folder / 'test'}", "-o", self.folder / "o", option, value, expect=2)
+            self.assertIn(f"{option}: only the experiment methods", done.stderr)
+
     def test_does_nothing_twice(self):
         first = self.study("classes", "--test", "a=test", "--quick")
         self.check_schema(self.read("classes"), "classes")

@@ -245,8 +245,20 @@ void check_seeds(const std::vector<std::uint64_t>& seeds) {
   }
 }
 
+/// Throws if an option was given that none of the named experiments reads, only those of `users`
+/// do.
+void check_is_read(const char* option, const std::vector<std::string>& given,
+                   const std::vector<std::string>& names, const std::vector<std::string>& users) {
+  if (given.empty() || std::ranges::find_first_of(names, users) != names.end()) return;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("{}: only the experiment {} reads it", option, fmt::join(users, " or ")));
+}
+
 void run_studies(const StudyArguments& arguments, const Common& common) {
   check_seeds(arguments.seeds);
+  check_is_read("--predictions", arguments.predictions, arguments.names, {"methods"});
+  check_is_read("--fee", arguments.fee, arguments.names, {"methods"});
+  check_is_read("--models", arguments.models, arguments.names, {"methods", "additions"});
   const auto plan = plan_of(arguments);
   study::FileOptions file{
       .command = command_line(),
