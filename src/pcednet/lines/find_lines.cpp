@@ -32,6 +32,7 @@
 #include "pcednet/lines/smooth_joints.h"
 #include "pcednet/lines/split.h"
 #include "pcednet/lines/strings.h"
+#include "pcednet/lines/virtual_edges.h"
 #include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::lines {
@@ -225,6 +226,7 @@ void place_pieces(std::vector<Piece>& pieces, const OrderedPoints& cloud, const 
                   const Limits& limits, const Progress* progress) {
   join(pieces, cloud, limits, sampling.noise, progress);
   refine(pieces, cloud, sampling, progress);
+  drop_virtual_edges(pieces);
   round_corners(pieces, cloud, limits.tolerance);
   extend_free_ends(pieces, cloud, sampling.noise);
   if (sampling.noise > kMuchNoise) {
