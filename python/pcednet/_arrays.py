@@ -26,8 +26,11 @@ def numbers(values, name):
         array = np.asarray(values)
         if array.dtype == object or array.dtype.kind in "US":
             array = array.astype(np.float64)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, RuntimeError) as error:  # the last of tensors that need gradients
         raise UsageError(f"{name}: not an array of numbers: {error}") from None
+    if array.dtype.names:
+        columns = ", ".join(f"{name}[{field!r}]" for field in array.dtype.names[:3])
+        raise UsageError(f"{name}: a structured array; np.column_stack([{columns}]) makes columns of its fields")
     if array.dtype.kind not in "fiub":
         complex_too = ". Complex data not supported" if array.dtype.kind == "c" else ""
         raise UsageError(f"{name}: real numbers are needed, not {array.dtype}{complex_too}")

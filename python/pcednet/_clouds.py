@@ -85,8 +85,8 @@ class Cloud:
         """Whether the normals are those that pcednet once estimated for these points, as the file says."""
         return self._estimates is not None and self._estimates == _digest(self.xyz, self.normals)
 
-    def __array__(self, dtype=None):
-        return np.asarray(self.xyz, dtype)
+    def __array__(self, dtype=None, copy=None):
+        return np.array(self.xyz, dtype) if copy else np.asarray(self.xyz, dtype)
 
     def __getitem__(self, name):
         """The attribute `name`."""

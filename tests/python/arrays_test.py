@@ -20,6 +20,13 @@ def quietly(function, *arguments, **options):
         return function(*arguments, **options)
 
 
+class NeedsGradients:
+    """Refuses to be an array as a tensor of PyTorch does."""
+
+    def __array__(self, dtype=None):
+        raise RuntimeError("use detach()")
+
+
 class AsOnTheCommandLine(unittest.TestCase):
     def compare(self, positions, normals, position_type, *options, **named):
         with tempfile.TemporaryDirectory() as folder:
@@ -242,6 +249,9 @@ class Refusals(unittest.TestCase):
                           (pathlib.Path("a/scan.las"), r"by pcednet.read\('a/scan.las'\)$"),
                           (np.ones((3, 100)), r"xyz: shape \(n, 3\) is needed, not \(3, 100\); its transpose is xyz.T$"),
                           (np.ones((100, 6)), r"not \(100, 6\); the first three columns are xyz\[:, :3\]$"),
+                          (np.zeros(9, [("x", "f8"), ("y", "f4"), ("z", "f8"), ("class", "u1")]),
+                           r"structured array; np.column_stack\(\[xyz\['x'\], xyz\['y'\], xyz\['z'\]\]\)"),
+                          (NeedsGradients(), "xyz: not an array of numbers: use detach"),
                           (np.ones((100, 2)), r"not \(100, 2\)$"), (np.ones(100), r"not \(100,\)$")):
             with self.assertRaisesRegex(pcednet.UsageError, said):
                 pcednet.classify(xyz)

@@ -110,6 +110,8 @@ class Files(CliTest):
         for points in (slice(5), labels == 2, 0):
             with self.assertRaisesRegex(TypeError, r"some points are cloud.select\(points\)"):
                 cloud[points]
+        self.assertIs(np.asarray(cloud), cloud.xyz)
+        self.assertIsNot(cloud.__array__(copy=True), cloud.xyz)  # as numpy 2 asks
         part = cloud.select(cloud.labels == 2)
         pcednet.write(self.path("part.ply"), part)
         back = pcednet.read(self.path("part.ply"))
