@@ -131,6 +131,11 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     ------
     UsageError, InsufficientError, KeyboardInterrupt
         As :func:`classify`. A UsageError also for own classes without the edge classes.
+
+    Warns
+    -----
+    PcednetWarning
+        As :func:`classify`, and where options leave out every curve.
     """
     classes = _some(classes, _SHORT.values(), "classes", _LONG)
     kinds = _some(kinds, _KINDS, "kinds")
@@ -179,10 +184,12 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     if others and not prepared:
         notes.append(f"{others} labels are not edge classes (1 smooth, 2 sharp, 3 boundary): "
                      "counted as non-edge")
-    _arrays.warn(worded(notes))
     found = Lines(curve for curve in curves
                   if _SHORT[curve.label] in classes and curve.kind in kinds
                   and curve.confidence >= min_confidence)
+    if curves and not found:
+        notes.append(f"all {len(curves)} curves are left out by classes, kinds or min_confidence")
+    _arrays.warn(worded(notes))
     found._fit_tolerance = fit_tolerance
     found._kept = xyz._kept if isinstance(xyz, _clouds.Cloud) else None
     return found

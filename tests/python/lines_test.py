@@ -239,6 +239,14 @@ class Lines(CliTest):
         found.write(self.path("metres.dxf"), epsg=25832)
         self.assertRegex(self.path("metres.dxf").read_text(), r"\$INSUNITS\s+70\s+6\s")
 
+    def test_options_that_leave_out_every_curve_are_told(self):
+        for options in ({"classes": "smooth"}, {"kinds": "circle"}, {"min_confidence": 1.0}):
+            with self.assertWarnsRegex(pcednet.PcednetWarning, "all 12 curves are left out by classes, kinds or min_conf"):
+                self.assertEqual(pcednet.lines(self.positions, self.result, **options), [])
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertTrue(pcednet.lines(self.positions, self.result, kinds="segment"))
+
     def test_wrong_choices_are_refused(self):
         for wrong in ({"classes": ["crease"]}, {"kinds": "spline"}, {"stage": "end"},
                       {"gap": -1.0}, {"angle": 0.0}, {"angle": 400.0}, {"min_confidence": 2.0},
