@@ -142,7 +142,9 @@ class Evaluate(CliTest):
         truth.write_text("v 0 0 0\nv 1 0 0\nl 1 2\n")
         (self.folder / "other").mkdir()
         (self.folder / "empty.obj").write_text("")
-        run("evaluate", truth, "--truth", truth, "--model", "scan", expect=2)
+        for of_labels in (("--model", "scan"), ("--positive", "edge"), ("--calibration",)):
+            said = run("evaluate", truth, "--truth", truth, *of_labels, expect=2).stderr
+            self.assertRegex(said, f"--truth excludes {of_labels[0]}|{of_labels[0]} excludes --truth")
         run("evaluate", truth, "--cloud", truth, expect=2)
         run("evaluate", truth, "--truth", self.folder / "other", expect=4)
         run("evaluate", truth, "--truth", self.folder / "empty.obj", expect=4)

@@ -315,9 +315,6 @@ void add_evaluate(CLI::App& app, Common& common) {
                    "The cloud of the lines, or a folder of clouds with the same stems: lengths are "
                    "relative to it; without it to the box of the true curves")
       ->needs(truth);
-  for (const char* of_labels : {"--model", "--predictions", "--method", "--las-classification"}) {
-    truth->excludes(command->get_option(of_labels));
-  }
   add_choice(*command, "--positive", arguments->positive, eval::kPositives,
              "Classes that count as positive: sharp, edge (sharp and smooth), or boundary; own "
              "classes are scored one by one");
@@ -325,6 +322,10 @@ void add_evaluate(CLI::App& app, Common& common) {
                       "Write the scores to this JSON file; - for standard output");
   command->add_flag("--calibration", arguments->calibration,
                     "Also compare probabilities with frequencies");
+  for (const char* of_labels : {"--model", "--predictions", "--method", "--las-classification",
+                                "--positive", "--calibration"}) {
+    truth->excludes(command->get_option(of_labels));
+  }
   add_prepare_options(*command, arguments->preparation);
   for (const char* of_a_model :
        {"--no-context", "--no-boundary", "--exact", "--s-min", "--s-max", "--keep-orientation"}) {
