@@ -157,7 +157,7 @@ def classify(xyz, normals=None, *, model="general", threads=0, progress=None, vi
     >>> result = pcednet.classify(xyz)
     >>> sharp = xyz[result.labels == 2]
     """
-    positions, is_float32, given, scanners = _clouds.points_of(xyz, normals, viewpoint, keep_orientation)
+    positions, is_float32, given, scanners = _clouds.points_of(xyz, normals, viewpoint, keep_orientation, True)
     model = _models.model_of(model)
     core = model._core if context else model._core.without_context()
     if s_min or s_max or exact:
@@ -238,7 +238,7 @@ def describe(xyz, normals=None, *, scales=16, features=6, reconstruction="sphere
     PcednetWarning
         As :func:`classify`.
     """
-    positions, is_float32, given, scanners = _clouds.points_of(xyz, normals, viewpoint, keep_orientation)
+    positions, is_float32, given, scanners = _clouds.points_of(xyz, normals, viewpoint, keep_orientation, True)
     settings = descriptor_settings({
         "scales": scales, "features": features, "reconstruction": reconstruction, "gate": gate,
         "second_gate": second_gate, "exact": exact, "eps": eps, "s_min": s_min, "s_max": s_max,

@@ -152,6 +152,32 @@ class Cloud:
             return None
         return _arrays.labels(self.labels, len(self), names=self.class_names)
 
+    @property
+    def faces(self):
+        """int: how many faces the file has. Only their vertices are points; see :meth:`sample`."""
+        return self._kept.faces if self._kept is not None and len(self) == self._kept_rows else 0
+
+    def sample(self, points, seed=1):
+        """Points on the faces of a mesh, uniform by area, as ``pcednet convert --sample`` makes them.
+
+        Parameters
+        ----------
+        points : int
+        seed : int
+
+        Returns
+        -------
+        Cloud
+            With the normals of the faces and, if the vertices have them, colours.
+
+        Raises
+        ------
+        InsufficientError
+            There are no faces, or they have no area.
+        """
+        parts = _core.sample_faces(_parts_of(self), _arrays.whole(points, "points", 1), _arrays.seed(seed))
+        return Cloud._of(parts, self.name)
+
     def viewpoint(self):
         """The scanner position of each point, (n, 3) float64 with NaN where unknown; None if no
         scanner is known."""
@@ -206,10 +232,13 @@ def _digest(*arrays):
     return digest.digest()
 
 
-def points_of(xyz, normals=None, viewpoint=None, estimates=True):
+def points_of(xyz, normals=None, viewpoint=None, estimates=True, tells_of_faces=False):
     """Positions, whether they are as in float32, normals and scanners of a call, from arrays or from a Cloud, with or
-    without normals that are estimates."""
+    without normals that are estimates. `tells_of_faces`: a mesh is a warning."""
     if isinstance(xyz, Cloud):
+        if tells_of_faces and xyz.faces:
+            _arrays.warn([f"{xyz.name or 'the cloud'}: {xyz.faces} faces are not used, only their vertices: "
+                          "Cloud.sample(n) samples points on faces"])
         is_float32 = xyz._has_float32()
         if normals is None and (estimates or not xyz._has_estimates()):
             normals = xyz.normals

@@ -152,9 +152,11 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
             _core.check_edges(xyz._class_lines(), "lines", False)
             p_sharp = _probability(xyz, "p_sharp") if p_sharp is None else p_sharp
             p_smooth = _probability(xyz, "p_smooth") if p_smooth is None else p_smooth
+    told = labels is None
     if labels is None:
         labels = classify(xyz, normals, viewpoint=viewpoint, threads=threads, progress=progress)
-    positions, is_float32, given, scanners = _clouds.points_of(xyz, normals, viewpoint, estimates=False)
+    positions, is_float32, given, scanners = _clouds.points_of(xyz, normals, viewpoint, estimates=False,
+                                                               tells_of_faces=not told)
     rows = len(positions)
     prepared = isinstance(labels, Result)
     if prepared:

@@ -14,12 +14,15 @@
 #include "bindings.h"
 #include "job.h"
 #include "pcednet/core/error.h"
+#include "pcednet/detect/prepare.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/detect/result_truth.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/formats/write_cloud.h"
+#include "pcednet/io/faces.h"
 #include "pcednet/io/las/file.h"
 #include "text.h"
+#include "workbench/shapes/mesh_samples.h"
 
 namespace pcednet::python {
 namespace {
@@ -186,6 +189,21 @@ py::tuple read(const std::filesystem::path& path) {
   return py::make_tuple(take_apart(std::move(loaded.cloud)), texts_of(loaded.warnings));
 }
 
+/// Points on the faces of a cloud, as `pcednet convert --sample` makes them.
+py::dict sample_faces(const py::dict& parts, std::size_t points, std::uint64_t seed) {
+  PointCloud cloud = put_together(parts);
+  run_job({py::none()}, [&](const Progress* job) {
+    const auto triangles = io::triangles_of(cloud);
+    if (triangles.empty()) {
+      throw Error(ErrorKind::kInsufficient,
+                  "no faces to sample: .obj, .ply and .stl files can have faces");
+    }
+    cloud = shapes::sample_mesh(cloud, triangles, {.points = points, .seed = seed}, job);
+    detect::set_estimated_normals(cloud, false);
+  });
+  return take_apart(std::move(cloud));
+}
+
 /// A result, added to the cloud as the command line does.
 struct ResultParts {
   std::vector<Vec3> made = {};
@@ -276,6 +294,7 @@ py::dict take_apart(PointCloud&& cloud) {
 void add_clouds(py::module_& module) {
   py::class_<Kept>(module, "Kept")
       .def("of_part", kept_of_part)
+      .def_property_readonly("faces", [](const Kept& kept) { return io::face_count(*kept.cloud); })
       .def(py::pickle([](const Kept& kept) { return state_of(kept); },
                       [](const py::tuple& state) { return kept_of(state); }));
   module.attr("ESTIMATED_NORMALS") = std::string(detect::kEstimatedNormals);
@@ -290,6 +309,7 @@ void add_clouds(py::module_& module) {
   module.def("class_names", class_names);
   module.def("check_edges", check_edges);
   module.def("read", read);
+  module.def("sample_faces", sample_faces);
   module.def("write", write);
 }
 

@@ -153,6 +153,31 @@ class Files(CliTest):
         with self.assertWarnsRegex(pcednet.PcednetWarning, "does not keep"):
             pcednet.write(self.path("cloud.obj"), positions, labels=np.zeros(50, np.uint8))
 
+    def test_faces_of_a_mesh_are_told_and_sampled(self):
+        self.path("a.obj").write_text("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 0 4 4\nf 1 2 3 4\nf 3 4 5\n")
+        mesh = pcednet.read(self.path("a.obj"))
+        self.assertEqual((len(mesh), mesh.faces), (5, 2))
+        labels = np.zeros(5, np.uint8)
+        for use in (pcednet.describe, pcednet.classify, lambda mesh: pcednet.lines(mesh, labels), pcednet.lines):
+            with warnings.catch_warnings(record=True) as told:
+                warnings.simplefilter("always")
+                try:
+                    use(mesh)
+                except pcednet.InsufficientError:
+                    pass  # so few vertices are no surface
+            said = [str(one.message) for one in told if "faces" in str(one.message)]
+            self.assertEqual(said, ["a: 2 faces are not used, only their vertices: Cloud.sample(n) samples points on faces"])
+        points = mesh.sample(1000, seed=5)
+        run("convert", self.path("a.obj"), "-o", self.path("theirs.ply"), "--sample", 1000, "--seed", 5)
+        pcednet.write(self.path("ours.ply"), points)
+        self.assert_same_bytes(self.path("ours.ply"), self.path("theirs.ply"))
+        self.assertEqual(points.faces, 0)
+        self.assertEqual(mesh.select([0, 1]).faces, 0)
+        with self.assertRaisesRegex(pcednet.InsufficientError, "no faces to sample"):
+            points.sample(10)
+        with self.assertRaises(pcednet.UsageError):
+            mesh.sample(0)
+
     def test_scanners_of_a_cloud_are_used(self):
         positions = cube(3000)[0]
         cloud = pcednet.Cloud(positions)
