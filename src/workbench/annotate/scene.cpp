@@ -60,7 +60,7 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
   stage.advance();
   const auto curve = spatial::curve_order(scene->cloud.positions);
   const std::vector<Vec3> ordered = spatial::in_order(scene->cloud.positions, curve);
-  const std::vector<double> spacings = gls::spacings_of_places(scene->cloud.positions, curve);
+  std::vector<double> spacings = gls::spacings_of_places(scene->cloud.positions, curve);
   const auto range = gls::scale_range(ordered, {}, [&] { return spacings; });
   scene->spacing = gls::scale_range(ordered, {.s_max_ratio = kAnyRatio, .rounded = false}, [&] {
                      return spacings;

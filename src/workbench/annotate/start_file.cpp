@@ -34,7 +34,7 @@ std::string start_name(const fs::path& file, const fs::path& project,
 fs::path start_place(const std::string& name, const fs::path& project,
                      const ShippedModels& shipped) {
   if (const auto found = shipped.find(name); found != shipped.end()) return found->second;
-  const fs::path place = formats::find_written(folder_of(project) / name);
+  fs::path place = formats::find_written(folder_of(project) / name);
   if (is_file(place)) return place;
   const fs::path here = formats::find_written(name);
   return is_file(here) ? fs::absolute(here) : place;
@@ -42,7 +42,7 @@ fs::path start_place(const std::string& name, const fs::path& project,
 
 fs::path start_file(const std::string& name, const fs::path& project,
                     const ShippedModels& shipped) {
-  const fs::path place = start_place(name, project, shipped);
+  fs::path place = start_place(name, project, shipped);
   if (is_file(place)) return place;
   throw Error(ErrorKind::kUnreadable,
               fmt::format("{}: its start, the model {}, is missing: put it back; annotate --model "
