@@ -101,7 +101,8 @@ decltype(auto) visit_scalar(ScalarType type, Action&& action) {
 template <typename Integer>
 bool is_in_range(double value) {
   // 2^bits is a double, the largest value of a 64-bit type is not.
-  constexpr double kEnd = 2.0 * static_cast<double>(std::numeric_limits<Integer>::max() / 2 + 1);
+  constexpr Integer kHalf = std::numeric_limits<Integer>::max() / 2;
+  constexpr double kEnd = 2.0 * (static_cast<double>(kHalf) + 1.0);
   return value >= static_cast<double>(std::numeric_limits<Integer>::min()) && value < kEnd;
 }
 
