@@ -109,6 +109,12 @@ class Viewpoint(CliTest):
         self.assertEqual(set(rows["three"]["scan"]), {0, 1, 2})
         for column in "scan", "scalar_edge_class", "nx":
             np.testing.assert_array_equal(rows["three"][column], rows["one"][column])
+        # --viewpoint is for all of them.
+        run("tiles", "plan", *paths, "-o", plan, "--viewpoint", 1, 2, 3, "--tile", 100, "--overwrite")
+        run("tiles", "run", plan, "--overwrite")
+        tile = (self.folder / "p_tiles" / "0.ply").read_bytes()
+        self.assertEqual(re.findall(rb"comment scanner.*", tile), [b"comment scanner 0: 1 2 3"])
+        self.assertNotIn(b" scan\n", tile)
 
     def test_tiles_leave_out_the_crowds_above_scanners(self):
         write_ply(self.folder / "room.ply", room_scan(), position_type="double", comments=["scanner 0: 100 50 1.5"])

@@ -256,10 +256,10 @@ void check_is_read(const char* option, const std::vector<std::string>& given,
 
 void run_studies(const StudyArguments& arguments, const Common& common) {
   check_seeds(arguments.seeds);
+  const auto plan = plan_of(arguments);
   check_is_read("--predictions", arguments.predictions, arguments.names, {"methods"});
   check_is_read("--fee", arguments.fee, arguments.names, {"methods"});
   check_is_read("--models", arguments.models, arguments.names, {"methods", "additions"});
-  const auto plan = plan_of(arguments);
   study::FileOptions file{
       .command = command_line(),
       .energy_is_measured = study::EnergyMeter(arguments.core_watts).has_counters(),
