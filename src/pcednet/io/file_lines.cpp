@@ -7,10 +7,6 @@ namespace {
 
 constexpr std::uint64_t kBytesAtOnce = 1 << 20;
 
-bool is_utf16(std::string_view text) {
-  return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
-}
-
 }  // namespace
 
 FileLines::FileLines(const InputFile& file) : file_(&file) {

@@ -114,9 +114,13 @@ std::string_view without_mark(std::string_view text) {
   return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
 }
 
+bool is_utf16(std::string_view text) {
+  return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
+}
+
 std::string in_utf8(std::string text) {
+  if (!is_utf16(text)) return text;
   const bool little = text.starts_with("\xFF\xFE");
-  if (!little && !text.starts_with("\xFE\xFF")) return text;
   const auto unit_at = [&](std::size_t at) -> char32_t {
     if (at + 1 >= text.size()) return 0;
     const auto first = static_cast<unsigned char>(text[at]),

@@ -64,6 +64,9 @@ bool is_comment(std::string_view line);
 /// `text` behind its byte-order mark, if it has that of UTF-8.
 std::string_view without_mark(std::string_view text);
 
+/// Whether `text` begins with a byte-order mark of UTF-16.
+bool is_utf16(std::string_view text);
+
 /// A text in UTF-8: `text` itself, unless it has a byte-order mark of UTF-16. Halves of characters
 /// become U+FFFD.
 std::string in_utf8(std::string text);
