@@ -26,11 +26,23 @@ bool is_listed(const std::vector<std::string>& names, std::string_view name) {
   return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// The classes that are drawn.
-std::vector<std::string> drawn_classes(const LinesArguments& arguments) {
+/// The option that draws these classes, and another if it is named.
+std::string class_option(const LinesArguments& arguments, const std::string& other = "") {
   std::vector<std::string> classes = arguments.classes;
   if (!arguments.lines.boundaries) std::erase(classes, "boundary");
-  return classes;
+  if (!other.empty()) classes.push_back(other);
+  return fmt::format("--class {}", fmt::join(classes, ","));
+}
+
+/// How to draw rounded edges, if they are not drawn and longer than the others.
+std::string hint_of_rounded(const LinesArguments& arguments, const std::vector<Curve>& curves) {
+  double rounded = 0.0, others = 0.0;
+  for (const Curve& curve : curves) {
+    (curve.edge_class == kSmoothEdge ? rounded : others) += length_of(curve);
+  }
+  if (is_listed(arguments.classes, "smooth") || rounded <= others) return "";
+  return fmt::format(" (rounded edges are {:.6g} long: {} draws them)", rounded,
+                     class_option(arguments, "smooth"));
 }
 
 }  // namespace
@@ -66,7 +78,7 @@ std::string filter_lines(const LinesArguments& arguments, const lines::LineScale
     std::function<bool(const Curve&)> keeps;
   };
   const Option options[] = {
-      {fmt::format("--class {}", fmt::join(drawn_classes(arguments), ",")),
+      {class_option(arguments) + hint_of_rounded(arguments, curves),
        [&](const Curve& curve) {
          const std::string_view name = io::line_class(curve.edge_class).name;
          return is_listed(arguments.classes, name.substr(0, name.find('-')));

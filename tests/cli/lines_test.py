@@ -122,6 +122,17 @@ class Lines(LinesTest):
             self.assertEqual(geojson(self.made["geojson"]), [])
         run("lines", path, *self.outputs("geojson"), "--min-length", "0.9", "--overwrite")
         self.assertEqual(len(geojson(self.made["geojson"])), 12)
+        points, _, _ = cube(8000)
+        inner = np.clip(points, .06, .94)
+        normals = (points - inner) / np.linalg.norm(points - inner, axis=1)[:, None]
+        labels = (np.sort(np.abs(normals), axis=1)[:, 1] > .1).astype(np.uint8)
+        rounded = self.folder / "rounded.ply"
+        write_ply(rounded, inner + .06 * normals, normals, labels)
+        done = run("lines", rounded, *self.outputs("geojson"), "--overwrite")
+        self.assertRegex(done.stderr, r"left out: \d+ by --class sharp \(rounded edges are [\d.]+ long: "
+                                      r"--class sharp,smooth draws them\)")
+        done = run("lines", rounded, *self.outputs("geojson"), "--class", "sharp,smooth", "--overwrite")
+        self.assertNotIn("left out", done.stderr)
         done = run("lines", path, *self.outputs("geojson"), "--stage", "creases", "--min-length", "9",
                    "--overwrite")
         self.assertNotIn("by --min-length", done.stderr)

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -50,6 +51,14 @@ TEST(ExactPoints, MayLieOnCurvedFacesMostly) {
     }
   }
   EXPECT_TRUE(prepare(cloud).decision.exact);
+}
+
+TEST(ExactPoints, AreNotThoseOfAGrid) {
+  PointCloud cloud;
+  for (int x = 0; x < 60; ++x) {  // a bend between two planes, as a blurred volume has
+    for (int y = 0; y < 60; ++y) cloud.positions.emplace_back(x, y, std::max(0, x - 30));
+  }
+  EXPECT_FALSE(prepare(cloud).decision.exact);
 }
 
 TEST(ExactPoints, AreNoFewPointsOrCopiesOfThem) {

@@ -152,6 +152,35 @@ TEST(ExactFolds, LeaveRoundEdgesAlone) {
   EXPECT_GT(total_length(column(6, 12.0, 15.0).folds()), 0.8 * (6 * 12.0));
 }
 
+/// Where the edges of a unit grid cross the surface of a drum with blurred rims.
+PlanePart blurred_drum(double radius, double half_height) {
+  const auto depths = [&](const Vec3& p) {
+    return Eigen::Vector2d(radius - std::hypot(p.x(), p.y()), half_height - std::abs(p.z()));
+  };
+  const auto is_inside = [&](const Vec3& p) {
+    return (-2.0 * depths(p)).array().exp().sum() < 1.0;
+  };
+  PlanePart part;
+  const int end = static_cast<int>(radius) + 2;
+  for (int i = 0; i < 8 * end * end * end; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3 a(i % (2 * end) - end, i / (2 * end) % (2 * end) - end, i / (4 * end * end) - end);
+      Vec3 b = a + Vec3::Unit(axis);
+      if (is_inside(a) == is_inside(b)) continue;
+      for (int halving = 0; halving < 40; ++halving) {
+        const Vec3 middle = 0.5 * (a + b);
+        (is_inside(middle) == is_inside(a) ? a : b) = middle;
+      }
+      part.add(a, Vec3::Unit(axis), depths(a).maxCoeff() < 3.0);
+    }
+  }
+  return part;
+}
+
+TEST(ExactFolds, AreNotWhereTheLayersOfAGridMeet) {
+  EXPECT_TRUE(blurred_drum(9.0, 6.3).folds().empty());
+}
+
 TEST(ExactFolds, ReplaceTheCreasesThere) {
   PlanePart box;
   box.add_box(Vec3::Zero(), {20.0, 20.0, 20.0});

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "pcednet/core/eigendecomposition.h"
 #include "pcednet/lines/plane_sums.h"
 
 namespace pcednet::lines {
@@ -24,6 +25,10 @@ constexpr double kCores[] = {0.4, 0.2, 0.1};
 constexpr double kLeastInCore = 0.7;      ///< of the members
 constexpr double kLeastPatchWidth = 0.2;  ///< of the members, standard deviation in spacings
 constexpr double kOneNormal = 0.999;      ///< cosine of patches that may be of one plane
+// Of the points on a plane that the surface crosses: those between others off it, and on a line.
+constexpr double kLeastAmid = 0.8, kLeastOnLines = 0.2;
+constexpr double kNarrowest = 0.07;       ///< of a place on a plane, across to along, variances
+constexpr std::size_t kFewNearby = 6;     ///< on the plane, and off it
 constexpr std::size_t kLeastOfCore = 24;  ///< members: fewer may be of a curved surface
 constexpr std::size_t kSeedsBetweenLooks = 1024;
 constexpr std::uint32_t kNoRow = std::numeric_limits<std::uint32_t>::max();
@@ -235,9 +240,35 @@ void PlaneUnion::add(PlanePatch patch) {
   planes.push_back(std::move(patch));
 }
 
+/// Whether the surface crosses this plane: nearly all of its points have others on both sides, and
+/// many of them are on lines. Points on the edges of a grid are on such planes, one for each of its
+/// layers.
+bool is_crossed(const OrderedPoints& cloud, const Candidates& candidates, const PlanePatch& plane) {
+  std::size_t amid = 0, on_lines = 0;
+  for (const std::uint32_t i : plane.members) {
+    bool above = false, below = false;
+    std::size_t on = 0, off = 0;
+    Mat3 products = Mat3::Zero();
+    for (const std::uint32_t other : candidates.near(candidates.rows[i])) {
+      const Vec3 offset = cloud.position(other) - cloud.position(i);
+      if (!plane.is_on(cloud.position(other))) {
+        if (off++ < kFewNearby) (plane.normal.dot(offset) > 0.0 ? above : below) = true;
+      } else if (on++ < kFewNearby) {
+        products += offset * offset.transpose();
+      }
+    }
+    amid += above && below ? 1 : 0;
+    const Vec3 spread = eigendecomposition(products).values;
+    on_lines += spread[1] < kNarrowest * spread[2] ? 1 : 0;
+  }
+  const auto all = static_cast<double>(plane.members.size());
+  return static_cast<double>(amid) >= kLeastAmid * all &&
+         static_cast<double>(on_lines) >= kLeastOnLines * all;
+}
+
 /// One plane for all patches of it: those of a plate with a slot across it are two.
-std::vector<PlanePatch> united(const OrderedPoints& cloud, std::vector<PlanePatch> patches,
-                               double spacing) {
+std::vector<PlanePatch> united(const OrderedPoints& cloud, const Candidates& candidates,
+                               std::vector<PlanePatch> patches, double spacing) {
   std::stable_sort(patches.begin(), patches.end(), [](const PlanePatch& a, const PlanePatch& b) {
     return a.members.size() > b.members.size();
   });
@@ -251,6 +282,8 @@ std::vector<PlanePatch> united(const OrderedPoints& cloud, std::vector<PlanePatc
     plane.point = fitted.point;
     plane.normal = fitted.normal;
   }
+  std::erase_if(whole.planes,
+                [&](const PlanePatch& plane) { return is_crossed(cloud, candidates, plane); });
   return std::move(whole.planes);
 }
 
@@ -267,7 +300,7 @@ std::vector<PlanePatch> find_exact_planes(const OrderedPoints& cloud, double spa
       growth.try_at(row, least_on);
     }
   }
-  return united(cloud, std::move(growth.found), spacing);
+  return united(cloud, candidates, std::move(growth.found), spacing);
 }
 
 }  // namespace pcednet::lines
