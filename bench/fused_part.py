@@ -3,7 +3,7 @@
 
     bench/fused_part.py [--pcednet PROGRAM] [PITCH BLUR NOISE]...
 
-The part is a bracket of 100 by 60 by 50 with bores, counterbores, a pocket and a boss. Its signed distance is
+The scores have a line for sharp edges and one for sharp and rounded ones. The part is a bracket of 100 by 60 by 50 with bores, counterbores, a pocket and a boss. Its signed distance is
 sampled at a pitch, blurred by a Gaussian (which rounds edges), and given smooth noise, both in pitches.
 """
 import argparse
@@ -19,12 +19,10 @@ LOW, HIGH = np.array([-3.] * 3), np.array([103., 63, 53])
 SCREWS, POCKET, BOSS = [(30, 12), (30, 48)], [(40, 20, 5), (55, 40, 12)], (75, 30)
 
 
-def distances(pitch):
-    """Of the points of a grid to the part, negative inside."""
-    x, y, z = grid = np.meshgrid(*(np.arange(a, b, pitch) for a, b in zip(LOW, HIGH)), indexing="ij")
-
+def distances(x, y, z):
+    """Of points to the part, negative inside."""
     def box(low, high):
-        return np.max([np.maximum(a - c, c - b) for a, b, c in zip(low, high, grid)], axis=0)
+        return np.max([np.maximum(a - c, c - b) for a, b, c in zip(low, high, (x, y, z))], axis=0)
 
     def cylinder(u, v, centre, radius, w, low, high):
         return np.maximum(np.hypot(u - centre[0], v - centre[1]) - radius, np.maximum(low - w, w - high))
@@ -90,6 +88,19 @@ def write(folder, points):
     (folder / "true.obj").write_text("\n".join(lines) + "\n")
 
 
+def print_scores(pcednet, points, all_classes):
+    """Of the lines of these classes."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        write(folder, points)
+        for classes in all_classes:
+            subprocess.run([pcednet, "lines", folder / "part.ply", "-o", folder / f"{classes}.obj", "--class", classes,
+                            "--progress", "none"], check=True, capture_output=True)
+            scores = subprocess.run([pcednet, "evaluate", folder / f"{classes}.obj", "--truth", folder / "true.obj"],
+                                    check=True, capture_output=True, text=True).stdout
+            print("\n".join(scores.splitlines()[classes != "sharp":2]))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--pcednet", default=pathlib.Path(__file__).parents[1] / "build/release/bin/pcednet")
@@ -98,23 +109,16 @@ def main():
     cases = list(zip(*[iter(arguments.numbers)] * 3)) or DEFAULTS
     for pitch, blur, noise in cases:
         random = np.random.default_rng(3)
-        distance = distances(pitch)
+        grid = np.meshgrid(*(np.arange(a, b, pitch) for a, b in zip(LOW, HIGH)), indexing="ij")
+        distance = distances(*grid)
         if blur:
             distance = gaussian_filter(np.clip(distance, -4 * pitch, 4 * pitch), blur)
         if noise:
             bumps = gaussian_filter(random.standard_normal(distance.shape), 2.5)
             distance += noise * pitch * bumps / bumps.std()
         points = vertices(distance, pitch)
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            write(folder, random.permutation(points))
-            print(f"pitch {pitch:g}, blurred by {blur:g}, noise {noise:g} pitches: {len(points)} points")
-            for classes in ("sharp", "sharp,smooth"):
-                subprocess.run([arguments.pcednet, "lines", folder / "part.ply", "-o", folder / f"{classes}.obj",
-                                "--class", classes, "--progress", "none"], check=True, capture_output=True)
-                scores = subprocess.run([arguments.pcednet, "evaluate", folder / f"{classes}.obj", "--truth",
-                                         folder / "true.obj"], check=True, capture_output=True, text=True).stdout
-                print("\n".join(scores.splitlines()[classes != "sharp":2]))
+        print(f"pitch {pitch:g}, blurred by {blur:g}, noise {noise:g} pitches: {len(points)} points")
+        print_scores(arguments.pcednet, random.permutation(points), ["sharp", "sharp,smooth"])
 
 
 if __name__ == "__main__":

@@ -73,6 +73,21 @@ TEST(Sampling, ThinWallsEverywhereAreNoNoise) {
   EXPECT_EQ(noise_of_wall(0.2, 1.0), noise_of_wall(0.2, -1.0));
 }
 
+TEST(Sampling, TakesScansThatAreNotAlignedForNoise) {
+  const auto noise_of_scans = [](double apart) {  // in spacings
+    Random random(4);
+    Cloud cloud = cube(30'000);
+    std::vector<Vec3> shifts;
+    for (int k = 0; k < 4; ++k) shifts.push_back(apart * cloud.spacing * normal_vector(random));
+    for (Vec3& p : cloud.positions) {
+      p += shifts[random.index(4)] + 0.02 * cloud.spacing * normal_vector(random);
+    }
+    return measure_sampling(OrderedPoints({cloud.positions, cloud.normals, cloud.classes})).noise;
+  };
+  EXPECT_LT(noise_of_scans(0.0), 0.05);
+  EXPECT_GT(noise_of_scans(1.2), 0.25);
+}
+
 /// Two walls and a chamfer between them, along y; points about one apart, the chamfer labelled.
 Cloud chamfer(double from_corner) {
   Random random(6);

@@ -1,5 +1,6 @@
 #include "pcednet/lines/sampling.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -17,6 +18,7 @@ namespace pcednet::lines {
 namespace {
 
 constexpr std::size_t kPlaneNeighbours = 15, kLeastNeighbours = 5;
+constexpr std::size_t kMoreNeighbours = 32;
 constexpr std::size_t kSamples = 2000;  ///< points that spacing and noise are measured at
 constexpr std::size_t kFewSamples = 50;
 constexpr double kUneven = 1.5;            ///< times the spacing
@@ -24,7 +26,10 @@ constexpr double kMostNoise = 0.7;         ///< in spacings: more is no surface
 constexpr double kLeastGapOfSheets = 0.5;  ///< between the two sides of a wall, of their heights
 constexpr double kLeastStep = 0.05;        ///< of rounded coordinates, in spacings
 constexpr std::size_t kOnOwnSide = 3;      ///< nearest others, hardly ever beyond a wall
-constexpr double kMostOpposed = 0.15;      ///< of these, where signs agree
+constexpr double kLikeNormals = 0.9;       ///< mean cosine where the surface is flat
+constexpr double kLayered = 2.1;           ///< least noise of several layers, by that of one
+constexpr double kLeastOfLayers = 0.15, kMostOfLayers = 0.6;  ///< in spacings
+constexpr double kMostOpposed = 0.15;                         ///< of these, where signs agree
 
 /// A point and its nearest others.
 struct PlaneSample {
@@ -125,6 +130,72 @@ std::vector<PlaneSample> samples_at(const OrderedPoints& cloud,
   return samples;
 }
 
+/// The points with about the normal of all others near them: not those of rods and thin walls.
+std::vector<std::uint32_t> flat_of(const OrderedPoints& cloud,
+                                   const std::vector<std::uint32_t>& points) {
+  const std::size_t others = cloud.available(kMoreNeighbours);
+  std::vector<spatial::Neighbour> nearest;
+  cloud.nearest_others(points, others, nearest);
+  std::vector<std::uint32_t> flat;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    double cosines = 0.0;
+    for (const auto& near : std::span(nearest).subspan(k * others, others)) {
+      cosines += cloud.face_away(points[k], near.index)
+                     ? 0.0
+                     : std::abs(cloud.normal(points[k]).dot(cloud.normal(near.index)));
+    }
+    if (cosines > kLikeNormals * static_cast<double>(others)) flat.push_back(points[k]);
+  }
+  return flat;
+}
+
+/// The root mean square distance of places from a paraboloid of least squares; `normal` is across.
+double bent_residual(const std::vector<Vec3>& places, const Vec3& normal) {
+  const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
+  Eigen::Matrix<double, Eigen::Dynamic, 6> terms(places.size(), 6);
+  Eigen::VectorXd heights(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double x = u.dot(places[i]), y = v.dot(places[i]);
+    const auto row = static_cast<Eigen::Index>(i);
+    terms.row(row) << 1.0, x, y, x * x, x * y, y * y;
+    heights[row] = normal.dot(places[i]);
+  }
+  const Eigen::VectorXd fitted = terms * terms.colPivHouseholderQr().solve(heights);
+  return (heights - fitted).norm() / std::sqrt(static_cast<double>(places.size()));
+}
+
+/// The noise of neighbours about a bent surface, whatever layer they are of.
+double bent_noise(const OrderedPoints& cloud, const std::vector<std::uint32_t>& points) {
+  const std::size_t others = cloud.available(kMoreNeighbours);
+  std::vector<spatial::Neighbour> nearest;
+  cloud.nearest_others(points, others, nearest);
+  std::vector<PlaneSample> samples;
+  std::vector<Vec3> offsets(others);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto row = std::span(nearest).subspan(k * others, others);
+    const double spacing = spacing_of(row);
+    if (!(spacing > 0.0)) continue;
+    std::transform(row.begin(), row.end(), offsets.begin(), [&](const auto& near) {
+      return Vec3(cloud.position(near.index) - cloud.position(points[k]));
+    });
+    PlaneSums sums;
+    for (const Vec3& offset : offsets) sums.add(offset);
+    samples.push_back({spacing, bent_residual(offsets, fit_plane(sums).normal), 0});
+  }
+  return noise_of(samples);
+}
+
+/// The noise of a cloud of several layers about a spacing apart, as of scans that are not aligned;
+/// of others, this one, which is that of the points' own layers.
+double noise_of_layers(const OrderedPoints& cloud, const std::vector<std::uint32_t>& points,
+                       double noise) {
+  const std::vector<std::uint32_t> flat = flat_of(cloud, points);
+  if (flat.size() < kFewSamples || cloud.available(kMoreNeighbours) < kMoreNeighbours) return noise;
+  const double of_all = bent_noise(cloud, flat);
+  const bool layered = of_all > kLeastOfLayers && of_all > kLayered * noise;
+  return layered ? std::min(of_all, kMostOfLayers) : noise;
+}
+
 /// Whether coordinates are multiples of a step: the planes of voxels are not those of the surface.
 bool is_rounded(const OrderedPoints& cloud, const std::vector<std::uint32_t>& points,
                 double spacing) {
@@ -144,12 +215,14 @@ Sampling measure_sampling(const OrderedPoints& cloud) {
   std::copy_if(all.begin(), all.end(), std::back_inserter(on), is_edge);
   all = some_of(all);
   std::remove_copy_if(all.begin(), all.end(), std::back_inserter(off), is_edge);
-  const std::vector<PlaneSample> around = samples_at(cloud, off.empty() ? all : off);
+  const std::vector<std::uint32_t>& most = off.empty() ? all : off;
+  const std::vector<PlaneSample> around = samples_at(cloud, most);
   const double spacing = typical_spacing(around);
   const double at_edges = typical_spacing(samples_at(cloud, some_of(on)));
   Sampling sampling{.spacing = spacing, .noise = 0.0, .oriented = are_oriented(around)};
   if (at_edges < kUneven * spacing) {
     sampling.noise = noise_of(around);
+    if (sampling.oriented) sampling.noise = noise_of_layers(cloud, most, sampling.noise);
   } else {
     sampling.spacing = at_edges;
     sampling.noise = noise_of(like(around, at_edges));
