@@ -8,7 +8,9 @@ class OrderedPoints;
 /// Where points at edges are much sparser than others, as in a scan from close by, theirs.
 struct Sampling {
   double spacing = 0.0;  ///< sqrt of the area per point, median
-  double noise = 0.0;    ///< of points about the plane of their neighbours, in spacings
+  /// Of points about the plane of their neighbours, in spacings; of scans that are not aligned,
+  /// about a surface between them.
+  double noise = 0.0;
   bool oriented = true;  ///< the normals of neighbours have like signs
   bool exact = false;    ///< drawn, not measured: a few points on a plane or circle are no accident
 };
