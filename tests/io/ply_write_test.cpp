@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "io/sample_cloud.h"
 #include "io/scratch.h"
 #include "pcednet/core/parallel.h"

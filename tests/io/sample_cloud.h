@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "pcednet/cloud/point_cloud.h"

@@ -6,7 +6,7 @@
 #include "io/scratch.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/xyz.h"
-#include "pcednet/io/xyz_guess.h"
+#include "pcednet/io/xyz_fields.h"
 
 namespace pcednet::io {
 namespace {

@@ -1,7 +1,6 @@
 #include "pcednet/io/lzf.h"
 
 #include <algorithm>
-#include <cstdint>
 
 namespace pcednet::io {
 

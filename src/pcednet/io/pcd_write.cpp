@@ -1,8 +1,5 @@
 #include <fmt/format.h>
 
-#include <cstring>
-#include <optional>
-
 #include "pcednet/io/cloud_columns.h"
 #include "pcednet/io/pcd.h"
 #include "pcednet/io/text_scan.h"

@@ -1,9 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
-#include <optional>
-#include <span>
 #include <utility>
 
 #include "pcednet/core/parallel.h"

@@ -2,7 +2,6 @@
 
 #include <memory>
 #include <string>
-#include <string_view>
 
 #include "pcednet/core/error.h"
 #include "pcednet/io/cloud_columns.h"

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "pcednet/io/cloud_builder.h"
 #include "pcednet/io/file_lines.h"

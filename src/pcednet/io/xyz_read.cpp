@@ -9,10 +9,7 @@
 #include "pcednet/io/file_lines.h"
 #include "pcednet/io/text_scan.h"
 #include "pcednet/io/xyz.h"
-#include "pcednet/io/xyz_commas.h"
 #include "pcednet/io/xyz_fields.h"
-#include "pcednet/io/xyz_guess.h"
-#include "pcednet/io/xyz_names.h"
 
 namespace pcednet::io {
 namespace {

@@ -6,7 +6,7 @@
 #include "pcednet/io/text_scan.h"
 #include "pcednet/io/write_blocks.h"
 #include "pcednet/io/xyz.h"
-#include "pcednet/io/xyz_guess.h"
+#include "pcednet/io/xyz_fields.h"
 
 namespace pcednet::io {
 namespace {

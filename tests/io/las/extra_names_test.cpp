@@ -1,4 +1,3 @@
-#include "pcednet/io/las/extra_names.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <numeric>
-
 #include "io/las/laz_writer.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/las/facts.h"

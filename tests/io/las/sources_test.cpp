@@ -4,7 +4,6 @@
 
 #include "io/las/las_writer.h"
 #include "pcednet/formats/write_cloud.h"
-#include "pcednet/io/las/las.h"
 
 namespace pcednet::io {
 namespace {

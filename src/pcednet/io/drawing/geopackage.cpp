@@ -133,11 +133,6 @@ class Insertion {
   int place_ = 0;
 };
 
-template <typename T>
-void append_little(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
 /// GeoPackageBinary: a header with the box, then a LineString Z as well-known binary.
 std::string geometry_of(const std::vector<Vec3>& points, int srs) {
   constexpr std::uint8_t kVersion1 = 0, kLittleEndianBoxOfXyz = 0x05;

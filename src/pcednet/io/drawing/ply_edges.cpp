@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <cstring>
-
 #include "pcednet/core/error.h"
 #include "pcednet/core/version.h"
 #include "pcednet/io/drawing/line_classes.h"
@@ -9,11 +7,6 @@
 
 namespace pcednet::io {
 namespace {
-
-template <typename T>
-void append_number(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);  // little-endian
-}
 
 std::string ply_header(const LineMesh& mesh, std::size_t edges) {
   return fmt::format(
@@ -37,15 +30,15 @@ void write_ply_edges(const std::filesystem::path& path, Curves curves,
   }
   std::string bytes = ply_header(mesh, edges);
   for (const Vec3& vertex : mesh.vertices) {
-    for (const double coordinate : vertex) append_number(bytes, coordinate);
+    for (const double coordinate : vertex) append_little(bytes, coordinate);
   }
   for (std::size_t c = 0; c < curves.size(); ++c) {
     const auto& chain = mesh.chains[c];
     for (std::size_t v = 1; v < chain.size(); ++v) {
-      append_number(bytes, static_cast<std::int32_t>(chain[v - 1]));
-      append_number(bytes, static_cast<std::int32_t>(chain[v]));
-      append_number(bytes, static_cast<std::uint8_t>(line_class(curves[c].edge_class).edge_class));
-      append_number(bytes, static_cast<std::int32_t>(c));
+      append_little(bytes, static_cast<std::int32_t>(chain[v - 1]));
+      append_little(bytes, static_cast<std::int32_t>(chain[v]));
+      append_little(bytes, static_cast<std::uint8_t>(line_class(curves[c].edge_class).edge_class));
+      append_little(bytes, static_cast<std::int32_t>(c));
     }
   }
   write_text_file(path, bytes, options.overwrite);

@@ -47,6 +47,12 @@ BoundingBox drawn_box(Curves curves, const DrawingOptions& options);
 /// recognise a real.
 std::string real_digits(double value);
 
+/// Adds the bytes of a number, little-endian.
+template <typename T>
+void append_little(std::string& bytes, T value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
 double dihedral_degrees(const lines::Curve& curve);
 
 }  // namespace pcednet::io

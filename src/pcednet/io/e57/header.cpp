@@ -6,7 +6,6 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <pugixml.hpp>
 
 namespace pcednet::io {

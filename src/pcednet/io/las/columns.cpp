@@ -7,7 +7,6 @@
 
 #include "pcednet/core/bytes.h"
 #include "pcednet/core/error.h"
-#include "pcednet/io/las/comments.h"
 #include "pcednet/io/las/extra_names.h"
 #include "pcednet/io/las/layout.h"
 #include "pcednet/io/text_scan.h"

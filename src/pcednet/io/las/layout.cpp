@@ -11,10 +11,9 @@
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
-#include "pcednet/io/las/comments.h"
 #include "pcednet/io/las/copc.h"
 #include "pcednet/io/las/las.h"
-#include "pcednet/io/las/records.h"
+#include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {
 namespace {
@@ -230,6 +229,29 @@ std::vector<std::string> las_losses(const PointCloud& first, const LasChoices& c
                                  choices.promoted ? "" : "the input's ", file.point_format()));
   }
   return losses;
+}
+
+std::optional<LasRecord> las_comment_record(const std::vector<std::string>& comments) {
+  std::string text;
+  for (const std::string& comment : comments) text += comment + "\n";
+  if (text.empty() || text.size() > UINT16_MAX) return std::nullopt;
+  return new_record(kCommentsRecord, "comments", std::move(text));
+}
+
+std::vector<std::string> take_las_comments(LasFile& file) {
+  std::vector<std::string> comments;
+  for (LasRecord& record : file.records) {
+    if (!record.is(kCommentsRecord)) continue;
+    std::string text = std::move(record.data);
+    std::replace_if(
+        text.begin(), text.end(),
+        [](unsigned char c) { return c != '\n' && (c < ' ' || c == 127); }, ' ');
+    Lines lines(text);
+    std::string_view line;
+    while (lines.next(line)) comments.emplace_back(line);
+  }
+  std::erase_if(file.records, [](const LasRecord& r) { return r.is(kCommentsRecord); });
+  return comments;
 }
 
 }  // namespace pcednet::io

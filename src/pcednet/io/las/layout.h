@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,5 +53,12 @@ double las_step(const LasFile& file, std::size_t axis, double coordinate);
 
 /// Writes one number of a column that is not copied verbatim.
 void write_scaled(const LasColumn& column, const std::byte* from, char* to);
+
+/// The comments of a cloud as a record of user id "pcednet", number 1: lines of UTF-8 text. None if
+/// there are no comments, or more than the 64 KiB of a record.
+std::optional<LasRecord> las_comment_record(const std::vector<std::string>& comments);
+
+/// Removes such records from a file and returns their lines, control characters as blanks.
+std::vector<std::string> take_las_comments(LasFile& file);
 
 }  // namespace pcednet::io

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "pcednet/core/parallel.h"
-#include "pcednet/io/las/comments.h"
 #include "pcednet/io/las/file.h"
 #include "pcednet/io/las/las.h"
+#include "pcednet/io/las/layout.h"
 #include "pcednet/io/las/laz.h"
 #include "pcednet/io/las/records.h"
 #include "pcednet/io/scanners.h"
