@@ -8,7 +8,7 @@
 #include "job.h"
 #include "named.h"
 #include "pcednet/eval/line_scores.h"
-#include "pcednet/eval/score_columns.h"
+#include "pcednet/eval/report.h"
 #include "pcednet/io/drawing/read_curves.h"
 
 namespace pcednet::python {

@@ -1,4 +1,4 @@
-#include "pcednet/eval/class_report.h"
+#include "pcednet/eval/report.h"
 
 #include <gtest/gtest.h>
 

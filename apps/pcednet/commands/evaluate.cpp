@@ -14,7 +14,6 @@
 #include "models.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/classify.h"
-#include "pcednet/eval/class_report.h"
 #include "pcednet/eval/predictions.h"
 #include "pcednet/eval/report.h"
 #include "pcednet/formats/format.h"
