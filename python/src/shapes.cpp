@@ -11,9 +11,8 @@
 #include "workbench/shapes/default_set.h"
 #include "workbench/shapes/line_set.h"
 #include "workbench/shapes/piece_set.h"
-#include "workbench/shapes/relief_set.h"
+#include "workbench/shapes/relief.h"
 #include "workbench/shapes/scan_set.h"
-#include "workbench/shapes/sparse_set.h"
 #include "workbench/shapes/terrain.h"
 #include "workbench/shapes/varied_set.h"
 

@@ -10,7 +10,6 @@
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/kd_tree.h"
 #include "workbench/shapes/part_pieces.h"
-#include "workbench/shapes/sparse_set.h"
 #include "workbench/shapes/varied_set.h"
 
 namespace pcednet::shapes {

@@ -7,17 +7,23 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/random_vectors.h"
 #include "pcednet/spatial/kd_tree.h"
-#include "workbench/shapes/acquisition.h"
 #include "workbench/shapes/default_set.h"
 #include "workbench/shapes/patches.h"
 #include "workbench/shapes/polyhedra.h"
-#include "workbench/shapes/rims.h"
+#include "workbench/shapes/sampling.h"
+#include "workbench/shapes/shape.h"
 
 namespace pcednet::shapes {
 namespace {
 
 const std::vector<GeneratedCloud>& paper_set() {
-  static const std::vector<GeneratedCloud> clouds = generate_default(1, {.extras = false});
+  static const std::vector<GeneratedCloud> clouds = [] {
+    std::vector<GeneratedCloud> made;
+    for (const Recipe& recipe : default_recipes(1, {.extras = false})) {
+      made.push_back(generate(recipe, 1));
+    }
+    return made;
+  }();
   return clouds;
 }
 
@@ -102,7 +108,8 @@ TEST(DefaultSet, LabelsRimsByTheirDistance) {
 }
 
 TEST(DefaultSet, CloudsAreWhole) {
-  for (const GeneratedCloud& generated : generate_default(4)) {
+  for (const Recipe& recipe : default_recipes(4)) {
+    const GeneratedCloud generated = generate(recipe, 4);
     const PointCloud& cloud = generated.cloud;
     EXPECT_NO_THROW(check_consistent(cloud));
     EXPECT_EQ(cloud.labels.size(), cloud.size());

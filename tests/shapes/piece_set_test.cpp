@@ -11,7 +11,7 @@
 
 #include "pcednet/cloud/class_table.h"
 #include "pcednet/core/parallel.h"
-#include "workbench/shapes/sparse_set.h"
+#include "workbench/shapes/varied_set.h"
 
 namespace pcednet::shapes {
 namespace {

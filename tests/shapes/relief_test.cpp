@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
-#include "workbench/shapes/relief_set.h"
 #include "workbench/shapes/sampling.h"
 
 namespace pcednet::shapes {

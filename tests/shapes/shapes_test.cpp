@@ -6,10 +6,8 @@
 
 #include "pcednet/core/random_vectors.h"
 #include "pcednet/spatial/kd_tree.h"
-#include "workbench/shapes/boxes.h"
 #include "workbench/shapes/default_set.h"
 #include "workbench/shapes/default_shapes.h"
-#include "workbench/shapes/loft.h"
 #include "workbench/shapes/polyhedra.h"
 #include "workbench/shapes/sampling.h"
 

@@ -20,7 +20,6 @@
 #include "workbench/shapes/default_set.h"
 #include "workbench/shapes/line_set.h"
 #include "workbench/shapes/piece_set.h"
-#include "workbench/shapes/sparse_set.h"
 #include "workbench/shapes/terrain.h"
 #include "workbench/shapes/varied_set.h"
 

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "workbench/shapes/acquisition.h"
-#include "workbench/shapes/boxes.h"
+#include "workbench/shapes/polyhedra.h"
 #include "workbench/shapes/sampling.h"
 
 namespace pcednet::shapes {

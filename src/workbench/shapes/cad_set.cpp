@@ -8,9 +8,9 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/random.h"
 #include "pcednet/spatial/kd_tree.h"
-#include "workbench/shapes/acquisition.h"
 #include "workbench/shapes/cad_parts.h"
 #include "workbench/shapes/part_pieces.h"
+#include "workbench/shapes/sampling.h"
 #include "workbench/shapes/true_curves.h"
 #include "workbench/shapes/wear.h"
 
@@ -18,12 +18,6 @@ namespace pcednet::shapes {
 namespace {
 
 constexpr std::size_t kSolidSamplesPerPoint = 12;
-
-std::vector<Vec3> positions_of(const SolidSamples& samples) {
-  std::vector<Vec3> positions;
-  for (const FacePoint& point : samples.points) positions.push_back(point.position);
-  return positions;
-}
 
 std::vector<Vec3> sharp_edges(std::span<const BorderPoint> borders) {
   std::vector<Vec3> edges;
@@ -98,7 +92,7 @@ void label_beside(MeshVertices& vertices, std::span<const BorderPoint> borders, 
 SolidSamples spread(const SolidSamples& samples, std::size_t points) {
   constexpr double kFill = 0.7;  // number times distance squared, over the area
   const double distance = std::sqrt(kFill * samples.area / static_cast<double>(points));
-  const spatial::KdTree tree(positions_of(samples));
+  const spatial::KdTree tree(positions_of(samples.points));
   std::vector<char> free(samples.points.size(), 1);
   std::vector<spatial::Neighbour> near;
   SolidSamples spread = {{}, samples.area};
@@ -115,7 +109,7 @@ SolidSamples spread(const SolidSamples& samples, std::size_t points) {
 void wear_off(MeshVertices& vertices, const SolidSamples& samples,
               std::span<const BorderPoint> borders, const CadRecipe& recipe, double spacing,
               Random& random) {
-  SurfaceSamples surface = {positions_of(samples), {}};
+  SurfaceSamples surface = {positions_of(samples.points), {}};
   for (const FacePoint& point : samples.points) surface.normals.push_back(point.normal);
   const std::vector<Vec3> edges = sharp_edges(borders);
   wear_off(vertices, surface, edges,

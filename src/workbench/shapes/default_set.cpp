@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "pcednet/core/random.h"
 #include "workbench/shapes/default_shapes.h"
@@ -147,14 +146,6 @@ std::vector<Recipe> default_recipes(std::uint64_t seed, const DefaultSetOptions&
     for (Recipe& recipe : recipes) recipe.bands = *options.bands;
   }
   return recipes;
-}
-
-std::vector<GeneratedCloud> generate_default(std::uint64_t seed, const DefaultSetOptions& options) {
-  std::vector<GeneratedCloud> clouds;
-  for (const Recipe& recipe : default_recipes(seed, options)) {
-    clouds.push_back(generate(recipe, seed));
-  }
-  return clouds;
 }
 
 }  // namespace pcednet::shapes

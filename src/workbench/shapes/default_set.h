@@ -15,16 +15,12 @@ struct DefaultSetOptions {
   std::optional<EdgeBands> bands = {};
 };
 
-/// The recipes of generate_default(). `seed` determines the random shapes.
-std::vector<Recipe> default_recipes(std::uint64_t seed, const DefaultSetOptions& options = {});
-
 /// The Default training set of Himeur et al. 2021, remade from their description: six shapes, point
 /// counts, class shares and noisy variants (287,900 points in nine clouds). Further clouds add
 /// properties of real scans: other angles, edges that fade out or are rounded, open borders, uneven
 /// density, stronger noise. See docs/shapes.md.
 ///
-/// The same seed gives the same clouds.
-std::vector<GeneratedCloud> generate_default(std::uint64_t seed,
-                                             const DefaultSetOptions& options = {});
+/// `seed` determines the random shapes.
+std::vector<Recipe> default_recipes(std::uint64_t seed, const DefaultSetOptions& options = {});
 
 }  // namespace pcednet::shapes

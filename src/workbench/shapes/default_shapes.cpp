@@ -5,10 +5,9 @@
 #include <numbers>
 #include <vector>
 
-#include "workbench/shapes/boxes.h"
-#include "workbench/shapes/loft.h"
 #include "workbench/shapes/patches.h"
-#include "workbench/shapes/rims.h"
+#include "workbench/shapes/polyhedra.h"
+#include "workbench/shapes/shape.h"
 
 namespace pcednet::shapes {
 namespace {

@@ -6,13 +6,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "workbench/shapes/acquisition.h"
 #include "workbench/shapes/cad_parts.h"
 #include "workbench/shapes/cad_set.h"
-#include "workbench/shapes/rims.h"
 #include "workbench/shapes/roofs.h"
 #include "workbench/shapes/sampling.h"
 #include "workbench/shapes/scanner.h"
+#include "workbench/shapes/shape.h"
 #include "workbench/shapes/survey_roofs.h"
 #include "workbench/shapes/true_curves.h"
 #include "workbench/shapes/wear.h"

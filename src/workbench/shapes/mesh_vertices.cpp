@@ -14,13 +14,6 @@ namespace {
 using spatial::KdTree;
 using spatial::Neighbour;
 
-template <typename Point>
-std::vector<Vec3> positions_of(std::span<const Point> points) {
-  std::vector<Vec3> positions;
-  for (const Point& point : points) positions.push_back(point.position);
-  return positions;
-}
-
 std::vector<std::uint32_t> shuffled(std::size_t count, Random& random) {
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0u);
@@ -117,7 +110,7 @@ MeshVertices mesh_vertices(const SolidSamples& samples, std::span<const BorderPo
   for (const BorderPoint& border : all_borders) {
     if (style.smooth_borders || border.turn() >= kSharpTurn) borders.push_back(border);
   }
-  const KdTree border_tree(positions_of(std::span<const BorderPoint>(borders)));
+  const KdTree border_tree(positions_of(borders));
   // The spacing at borders that makes the wanted number of points.
   double spacing = std::sqrt(kFill * samples.area / static_cast<double>(style.points));
   std::vector<double> relative;
@@ -131,7 +124,7 @@ MeshVertices mesh_vertices(const SolidSamples& samples, std::span<const BorderPo
 
   MeshVertices vertices;
   std::vector<char> free(samples.points.size(), 1);
-  const KdTree tree(positions_of(std::span<const FacePoint>(samples.points)));
+  const KdTree tree(positions_of(samples.points));
   std::vector<Neighbour> near;
   const auto keep_away = [&](const Vec3& position, const Vec3& normal, double radius) {
     tree.within(position, radius, near);

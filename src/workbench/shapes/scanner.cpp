@@ -1,10 +1,8 @@
 #include "workbench/shapes/scanner.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random_vectors.h"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <variant>
@@ -83,5 +84,16 @@ EdgeClass class_at(double distance, const EdgeBands& bands);
 std::vector<std::uint8_t> label_by_distance(std::span<const Vec3> positions,
                                             std::span<const EdgeCurve> edges,
                                             const EdgeBands& bands);
+
+/// The width of the band along the rims that is labelled boundary, in spacings.
+inline constexpr double kBoundaryBand = 0.7;
+
+/// Adds to `shape` the borders of its patches over the unit square, in short chords, except those
+/// on one of its edges. Not for patches that are trimmed, closed or joined without an edge.
+void add_rims(Shape& shape);
+
+/// Labels non-edge points nearer than `width` to a rim kBoundary.
+void label_rims(std::span<const Vec3> positions, std::span<const Segment> rims, double width,
+                std::span<std::uint8_t> labels);
 
 }  // namespace pcednet::shapes

@@ -166,12 +166,6 @@ std::vector<BorderPoint> borders_by(const Solid& solid, std::span<const FacePoin
   return borders;
 }
 
-std::vector<Vec3> positions_of(std::span<const FacePoint> points) {
-  std::vector<Vec3> positions;
-  for (const FacePoint& point : points) positions.push_back(point.position);
-  return positions;
-}
-
 }  // namespace
 
 std::vector<BorderPoint> find_borders(const Solid& solid, const SolidSamples& samples) {

@@ -39,6 +39,13 @@ struct BorderPoint {
   double turn() const;  ///< the angle between the normals, radians; 0 where faces join smoothly
 };
 
+/// The positions of face points or border points.
+std::vector<Vec3> positions_of(const auto& points) {
+  std::vector<Vec3> positions;
+  for (const auto& point : points) positions.push_back(point.position);
+  return positions;
+}
+
 /// Points of the borders between faces, accurate to 1e-9, one per sample near a border.
 std::vector<BorderPoint> find_borders(const Solid& solid, const SolidSamples& samples);
 

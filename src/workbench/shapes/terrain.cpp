@@ -8,9 +8,7 @@
 #include <numbers>
 
 #include "pcednet/core/random_vectors.h"
-#include "workbench/shapes/acquisition.h"
 #include "workbench/shapes/cad_set.h"
-#include "workbench/shapes/local_spacing.h"
 #include "workbench/shapes/part_pieces.h"
 #include "workbench/shapes/roofs.h"
 #include "workbench/shapes/sampling.h"

@@ -1,10 +1,8 @@
 #include "workbench/shapes/turned_parts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
-#include <utility>
 #include <vector>
 
 #include "workbench/shapes/part_pieces.h"
