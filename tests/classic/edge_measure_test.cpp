@@ -9,7 +9,6 @@
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random.h"
 #include "support/expect_error.h"
-#include "workbench/classic/surface_variation.h"
 
 namespace pcednet::classic {
 namespace {

@@ -1,4 +1,4 @@
-#include "workbench/render/gaps.h"
+#include "workbench/render/splat.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,8 @@
-#include "workbench/render/near_points.h"
+#include "workbench/render/surfels.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "pcednet/core/random_vectors.h"
 

@@ -1,4 +1,4 @@
-#include "workbench/report/drawn_lines.h"
+#include "workbench/report/scene.h"
 
 #include <gtest/gtest.h>
 

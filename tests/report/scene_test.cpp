@@ -9,7 +9,6 @@
 
 #include "pcednet/core/random_vectors.h"
 #include "support/expect_error.h"
-#include "workbench/report/base64.h"
 
 namespace pcednet::report {
 namespace {

@@ -14,7 +14,7 @@
 #include "pcednet/detect/classify.h"
 #include "support/expect_error.h"
 #include "support/own_folder.h"
-#include "workbench/study/keys.h"
+#include "workbench/study/cache.h"
 #include "workbench/study/study_file.h"
 
 namespace pcednet::study {

@@ -5,8 +5,6 @@
 #include "io/scratch.h"
 #include "pcednet/core/error.h"
 #include "support/expect_error.h"
-#include "workbench/truth/abc_features.h"
-#include "workbench/truth/colour_labels.h"
 
 namespace pcednet::truth {
 namespace {

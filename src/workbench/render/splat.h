@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -24,5 +23,9 @@ struct Layer {
 /// Draws the surfels (at least one) with a z-buffer, blends overlapping visible ones into one
 /// surface, and draws edges on top. No disc is smaller than `min_radius` pixels.
 Layer draw(std::span<const Surfel> surfels, const Camera& camera, float min_radius);
+
+/// Closes the small holes, up to `size` pixels across, that the randomness of a sampling leaves in
+/// a surface; slits and openings stay open.
+void close_gaps(Layer& layer, int size);
 
 }  // namespace pcednet::render

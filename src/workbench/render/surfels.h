@@ -1,12 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "pcednet/cloud/class_table.h"
 #include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/vec3.h"
 
 namespace pcednet::render {
 
@@ -40,5 +42,19 @@ struct UnitBox {
 std::vector<Surfel> make_surfels(const PointCloud& cloud, std::span<const std::uint8_t> classes,
                                  std::size_t max_count, UnitBox* box = nullptr,
                                  const ClassTable& table = edge_classes());
+
+/// Some points close to a point, nearest first, without its exact duplicates.
+struct NearPoints {
+  static constexpr std::size_t kMost = 8;
+
+  std::array<std::uint32_t, kMost> index;
+  std::array<float, kMost> distance;
+  std::uint32_t count = 0;
+};
+
+/// Approximate nearest neighbours of each point, from the neighbours along three space-filling
+/// curves. Much faster than an exact search; it misses some neighbours, which suffices for drawing.
+/// Positions must be finite.
+std::vector<NearPoints> near_points(std::span<const Vec3> positions);
 
 }  // namespace pcednet::render

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
 
 #include "pcednet/core/error.h"
@@ -12,7 +11,6 @@
 #include "pcednet/formats/file_name.h"
 #include "pcednet/formats/labels.h"
 #include "pcednet/io/input_file.h"
-#include "workbench/report/drawn_lines.h"
 #include "workbench/report/scene.h"
 #include "workbench/truth/read_labelled.h"
 

@@ -10,10 +10,11 @@
 #include "pcednet/cloud/octahedral.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/random.h"
+#include "pcednet/detect/averages.h"
+#include "pcednet/lines/find_lines.h"
 #include "pcednet/normals/estimate.h"
 #include "workbench/render/camera.h"
 #include "workbench/render/surfels.h"
-#include "workbench/report/base64.h"
 
 namespace pcednet::report {
 namespace {
@@ -77,7 +78,26 @@ void put_view(Scene& scene, const PointCloud& cloud) {
   for (int axis = 0; axis < 3; ++axis) scene.view[axis] = direction[axis];
 }
 
+constexpr double kSteps = 65535.0;          // of the longest side
+constexpr double kDrawnTolerance = 0.0002;  // of it: a tenth of a pixel in a panel of 480
+
 }  // namespace
+
+std::string encode_base64(std::span<const std::uint8_t> bytes) {
+  static constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t left = std::min<std::size_t>(bytes.size() - i, 3);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < left ? bytes[i + k] : 0u);
+    for (std::size_t digit = 0; digit < 4; ++digit) {
+      text += digit <= left ? kDigits[group >> (18 - 6 * digit) & 63] : '=';
+    }
+  }
+  return text;
+}
 
 Scene make_scene(const PointCloud& cloud, std::size_t count, const Progress* progress) {
   Scene scene;
@@ -101,6 +121,33 @@ std::string pack_classes(std::span<const std::uint8_t> classes,
     bytes[k / 2] |= static_cast<std::uint8_t>(code << 4 * (k % 2));
   }
   return encode_base64(bytes);
+}
+
+OrderedJson find_drawn_lines(const detect::PreparedCloud& cloud,
+                             std::span<const std::uint8_t> classes, const Scene& scene,
+                             const Progress* progress) {
+  auto drawn = OrderedJson::array();
+  if (!(scene.size > 0.0)) return drawn;
+  detect::Classification found;
+  found.classes.assign(classes.begin(), classes.end());
+  found = of_averages(cloud, std::move(found));
+  const auto curves = lines::find_lines({.positions = cloud.positions,
+                                         .normals = cloud.normals,
+                                         .classes = found.classes,
+                                         .curve = cloud.curve},
+                                        {}, progress);
+  for (const lines::Curve& curve : curves) {
+    auto path = OrderedJson::array();
+    for (const Vec3& vertex : lines::sampled(curve, kDrawnTolerance * scene.size)) {
+      for (int axis = 0; axis < 3; ++axis) {
+        path.push_back(std::lround((vertex[axis] - scene.min[axis]) / scene.size * kSteps));
+      }
+    }
+    drawn.push_back({{"class", curve.edge_class},
+                     {"length", lines::length_of(curve)},
+                     {"path", std::move(path)}});
+  }
+  return drawn;
 }
 
 }  // namespace pcednet::report

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/json.h"
 #include "pcednet/core/progress.h"
+#include "pcednet/detect/prepare.h"
 
 namespace pcednet::report {
 
@@ -30,5 +32,15 @@ Scene make_scene(const PointCloud& cloud, std::size_t count, const Progress* pro
 /// The classes of the `shown` points, 4 bits a point, the first in the lower ones of a byte; 4 is
 /// unlabelled. Base64.
 std::string pack_classes(std::span<const std::uint8_t> classes, std::span<const std::size_t> shown);
+
+/// RFC 4648 base64, with padding.
+std::string encode_base64(std::span<const std::uint8_t> bytes);
+
+/// The edges of the cloud with these classes, as lines::find_lines() finds them, and how the page
+/// draws them: [{"class","length","path"}], the path's vertices as x, y, z, x, y, z, ... in
+/// 65535ths of scene.size from scene.min.
+OrderedJson find_drawn_lines(const detect::PreparedCloud& cloud,
+                             std::span<const std::uint8_t> classes, const Scene& scene,
+                             const Progress* progress = nullptr);
 
 }  // namespace pcednet::report

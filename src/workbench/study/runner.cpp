@@ -10,8 +10,7 @@
 #include "pcednet/core/digest.h"
 #include "pcednet/core/error.h"
 #include "pcednet/io/input_file.h"
-#include "workbench/study/external.h"
-#include "workbench/study/keys.h"
+#include "workbench/study/cache.h"
 #include "workbench/study/work.h"
 
 namespace pcednet::study {

@@ -3,17 +3,52 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <string_view>
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/json.h"
 #include "pcednet/core/version.h"
 #include "pcednet/io/input_file.h"
-#include "workbench/study/published.h"
 
 namespace pcednet::study {
 namespace {
 
 namespace fs = std::filesystem;
+
+using enum eval::Positive;
+
+/// A row of a table of Himeur et al. 2021: medians over their clouds of a set, trained on Default.
+struct PublishedRow {
+  std::string_view set;      ///< default, abc or shrec
+  std::string_view variant;  ///< of the experiment "methods"
+  eval::Positive positive;
+  eval::Scores median;
+};
+
+constexpr PublishedRow kPublished[] = {
+    {"default", "ca", kEdge, {.490, .880, .506, .628, .752, .457}},
+    {"default", "fee", kEdge, {.341, .814, .471, .480, .879, .316}},
+    {"default", "fc", kEdge, {.618, .958, .682, .753, .849, .604}},
+    {"default", "cnn", kEdge, {.546, .955, .623, .694, .807, .532}},
+    {"default", "pcednet", kEdge, {.826, .952, .857, .890, .946, .802}},
+    {"default", "pcednet-2c", kSharp, {.364, .611, .402, .430, .908, .274}},
+    {"abc", "ca", kSharp, {.348, .944, .520, .504, .881, .338}},
+    {"abc", "fee", kSharp, {.135, 1.000, .062, .235, .278, .132}},
+    {"abc", "fc", kSharp, {.452, .679, .469, .513, .921, .327}},
+    {"abc", "cnn", kSharp, {.530, .995, .648, .689, .922, .519}},
+    {"abc", "pcednet", kSharp, {.746, .745, .688, .713, .966, .548}},
+    {"abc", "pcednet-2c", kSharp, {.662, .936, .708, .730, .958, .574}},
+    {"shrec", "ca", kSharp, {.434, .449, .390, .442, .876, .284}},
+    {"shrec", "fee", kSharp, {.191, .527, .151, .278, .727, .160}},
+    {"shrec", "fc", kSharp, {.392, .538, .391, .455, .880, .294}},
+    {"shrec", "fc", kEdge, {.313, .909, .428, .461, .793, .300}},
+    {"shrec", "cnn", kSharp, {.468, .928, .570, .611, .911, .440}},
+    {"shrec", "cnn", kEdge, {.299, .945, .429, .446, .802, .287}},
+    {"shrec", "pcednet-2c", kSharp, {.462, .623, .455, .510, .868, .342}},
+    {"shrec", "pcednet", kSharp, {.495, .377, .344, .437, .916, .280}},
+    {"shrec", "pcednet", kEdge, {.349, .898, .444, .489, .814, .323}},
+};
 
 const char* name_of(eval::Positive positive) {
   return positive == eval::Positive::kEdge ? "edge" : "sharp";
@@ -123,7 +158,7 @@ OrderedJson curves_of(const Study& study) {
 OrderedJson expected_of(const Study& study) {
   OrderedJson expected = OrderedJson::array();
   if (study.experiment.name != "methods" || study.training != "default") return expected;
-  for (const PublishedRow& row : published_rows()) {
+  for (const PublishedRow& row : kPublished) {
     const auto is_row = [&](const Result& result) {
       return study.experiment.variants[result.variant].id == row.variant && result.set == row.set &&
              result.positive == row.positive;
@@ -160,6 +195,72 @@ bool is_of_command(const fs::path& file, const std::string& command) {
   } catch (const Json::exception&) {
     return false;
   }
+}
+
+/// A variant on a set: its seeds.
+using Group = std::vector<const Result*>;
+
+std::vector<Group> groups_of(const Study& study) {
+  std::vector<Group> groups;
+  for (const Result& result : study.results) {
+    const auto same = [&](const Group& group) {
+      return group[0]->variant == result.variant && group[0]->set == result.set &&
+             group[0]->positive == result.positive;
+    };
+    const auto place = std::find_if(groups.begin(), groups.end(), same);
+    if (place == groups.end()) {
+      groups.push_back({&result});
+    } else {
+      place->push_back(&result);
+    }
+  }
+  std::stable_sort(groups.begin(), groups.end(), [&](const Group& a, const Group& b) {
+    const auto rank = [&](const Group& group) {
+      const auto is_set = [&](const auto& set) { return set->name == group[0]->set; };
+      return std::find_if(study.sets.begin(), study.sets.end(), is_set) - study.sets.begin();
+    };
+    return rank(a) < rank(b);
+  });
+  return groups;
+}
+
+/// ".842" or ".842 +- .011".
+std::string spread(const Group& group, double (*value)(const Result&)) {
+  double sum = 0, squares = 0;
+  for (const Result* result : group) sum += value(*result);
+  const double mean = sum / static_cast<double>(group.size());
+  if (group.size() == 1) return fmt::format("{:.3f}", mean);
+  for (const Result* result : group) squares += std::pow(value(*result) - mean, 2);
+  return fmt::format("{:.3f} +-{:.3f}", mean,
+                     std::sqrt(squares / static_cast<double>(group.size() - 1)));
+}
+
+std::string score_row(const Group& group) {
+  return fmt::format(
+      " {:>13} {:>13} {:>13} {:>13} {:>13} {:>13}",
+      spread(group, [](const Result& r) { return eval::median_scores(r.scores).precision; }),
+      spread(group, [](const Result& r) { return eval::median_scores(r.scores).recall; }),
+      spread(group, [](const Result& r) { return eval::median_scores(r.scores).mcc; }),
+      spread(group, [](const Result& r) { return eval::median_scores(r.scores).f1; }),
+      spread(group, [](const Result& r) { return scores_of(eval::pooled_counts(r.scores)).mcc; }),
+      spread(group, [](const Result& r) { return scores_of(eval::pooled_counts(r.scores)).f1; }));
+}
+
+std::string mean(const Group& group, Cost Costs::*part) {
+  double sum = 0;
+  for (const Result* result : group) sum += (result->costs.*part).seconds;
+  return fmt::format(" {:>9.3f}", sum / static_cast<double>(group.size()));
+}
+
+/// The mean energy of the variant's phase; "-" where a variant is no single phase.
+std::string mean_joules(const Group& group, Phase phase) {
+  double sum = 0;
+  for (const Result* result : group) {
+    const auto joules = joules_per_thousand(*result, phase);
+    if (!joules) return fmt::format(" {:>14}", "-");
+    sum += *joules;
+  }
+  return fmt::format(" {:>14.4g}", sum / static_cast<double>(group.size()));
 }
 
 }  // namespace
@@ -220,6 +321,35 @@ void write_study(const fs::path& folder, const Study& study, const FileOptions& 
     }
   }
   write_text_file(file_of(folder, name), to_json(study, options), Overwrite::kYes);
+}
+
+std::string to_table(const Study& study) {
+  const bool scored = !study.experiment.timed;
+  std::string table, set;
+  for (const Group& group : groups_of(study)) {
+    const Result& first = *group[0];
+    if (set != first.set || table.empty()) {
+      set = first.set;
+      table += fmt::format("\n{:<24} {:>6}", study.experiment.name + ": " + set, "edge");
+      if (scored) {
+        table += fmt::format(" {:>13} {:>13} {:>13} {:>13} {:>13} {:>13}", "median P", "R", "MCC",
+                             "F1", "pooled MCC", "F1");
+      }
+      table += fmt::format(" {:>9} {:>9} {:>9}  seconds", "describe", "train", "classify");
+      table += scored ? "\n" : "  joules per 1000 points\n";
+    }
+    table += fmt::format("{:<24} {:>6}", study.experiment.variants[first.variant].id,
+                         first.positive == eval::Positive::kEdge ? "both" : "sharp");
+    if (scored) table += score_row(group);
+    table +=
+        mean(group, &Costs::describe) + mean(group, &Costs::train) + mean(group, &Costs::classify);
+    if (!scored) {
+      const Phase phase = study.experiment.variants[first.variant].phase;
+      table += "         " + mean_joules(group, phase);
+    }
+    table += "\n";
+  }
+  return table;
 }
 
 }  // namespace pcednet::study

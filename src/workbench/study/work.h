@@ -10,6 +10,7 @@
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/describe.h"
 #include "pcednet/detect/train.h"
+#include "pcednet/eval/predictions.h"
 #include "workbench/study/cache.h"
 #include "workbench/study/plan.h"
 
@@ -74,5 +75,10 @@ class CloudWork {
 StoredClasses classify_classic(const StudyCloud& cloud, const std::string& set,
                                const Treatment& treatment, const ClassicMethod& method,
                                double watts_per_core, const Progress* progress);
+
+/// The predictions of `method` for `cloud`; no classes if there is no file for it. Throws as
+/// eval::read_predictions() does.
+eval::Predictions external_classes(const ExternalMethod& method, const std::string& set,
+                                   const StudyCloud& cloud);
 
 }  // namespace pcednet::study
