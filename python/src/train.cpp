@@ -12,7 +12,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/detect/rounding.h"
 #include "text.h"
-#include "workbench/annotate/adapt_clouds.h"
+#include "workbench/annotate/adapt.h"
 
 namespace pcednet::python {
 namespace {

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "pcednet/core/random.h"
 #include "pcednet/nn/predict.h"
 #include "support/expect_error.h"

@@ -1,4 +1,4 @@
-#include "workbench/annotate/known_inputs.h"
+#include "workbench/annotate/known_files.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,6 @@
 
 #include "io/scratch.h"
 #include "support/expect_error.h"
-#include "workbench/annotate/kept_decisions.h"
 
 namespace pcednet::annotate {
 namespace {

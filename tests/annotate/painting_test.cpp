@@ -14,7 +14,6 @@
 #include "support/own_folder.h"
 #include "workbench/annotate/journal.h"
 #include "workbench/annotate/painting.h"
-#include "workbench/annotate/places.h"
 #include "workbench/annotate/select.h"
 
 namespace pcednet::annotate {

@@ -8,14 +8,13 @@
 #include <thread>
 
 #include "pcednet/core/random_vectors.h"
-#include "pcednet/detect/decide.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/formats/write_cloud.h"
 #include "support/expect_error.h"
 #include "support/own_folder.h"
+#include "workbench/annotate/known_files.h"
 #include "workbench/annotate/scene.h"
 #include "workbench/annotate/session.h"
-#include "workbench/annotate/start_file.h"
 
 namespace pcednet::annotate {
 namespace {

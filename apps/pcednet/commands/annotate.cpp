@@ -17,10 +17,9 @@
 #include "web_pages.h"
 #include "workbench/annotate/api.h"
 #include "workbench/annotate/journal.h"
-#include "workbench/annotate/known_inputs.h"
+#include "workbench/annotate/known_files.h"
 #include "workbench/annotate/painting.h"
 #include "workbench/annotate/saving.h"
-#include "workbench/annotate/start_file.h"
 
 namespace pcednet::app {
 namespace {

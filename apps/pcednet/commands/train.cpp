@@ -19,10 +19,9 @@
 #include "pcednet/io/text_scan.h"
 #include "prepare.h"
 #include "stage_clock.h"
-#include "workbench/annotate/adapt_clouds.h"
-#include "workbench/annotate/known_inputs.h"
+#include "workbench/annotate/adapt.h"
+#include "workbench/annotate/known_files.h"
 #include "workbench/annotate/learn.h"
-#include "workbench/annotate/start_file.h"
 
 namespace pcednet::app {
 namespace {

@@ -3,7 +3,6 @@
 #include <optional>
 #include <string>
 
-#include "workbench/annotate/events.h"
 #include "workbench/annotate/http.h"
 #include "workbench/annotate/session.h"
 #include "workbench/annotate/windows.h"

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cstring>
 #include <fstream>
 
 #include "pcednet/core/digest.h"

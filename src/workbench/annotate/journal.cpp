@@ -13,7 +13,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/io/input_file.h"
-#include "workbench/annotate/known_inputs.h"
+#include "workbench/annotate/known_files.h"
 
 namespace pcednet::annotate {
 namespace {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <numeric>
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/cloud/octahedral.h"

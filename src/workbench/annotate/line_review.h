@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "pcednet/lines/curve.h"
@@ -43,5 +46,17 @@ struct CurveView {
   Vec3 normal = Vec3::Zero();   ///< the mean of the surface there
 };
 CurveView view_of(const lines::Curve& curve, const Scene& scene);
+
+/// The file beside a project that keeps the decisions on the lines of a cloud.
+std::filesystem::path decisions_of(std::filesystem::path project, std::size_t cloud);
+
+/// Writes the decisions, with a digest of their lines. Throws Error(kFailure) when the disk is
+/// full.
+void keep_decisions(const std::filesystem::path& file, const LineReview& review);
+
+/// Those that were kept of the same lines; all open if there are none, if they are of other lines,
+/// or if the file is damaged.
+std::vector<Decision> kept_decisions(const std::filesystem::path& file,
+                                     std::span<const lines::Curve> curves);
 
 }  // namespace pcednet::annotate

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "pcednet/core/error.h"
-#include "workbench/annotate/known_inputs.h"
+#include "workbench/annotate/known_files.h"
 
 namespace pcednet::annotate {
 namespace {

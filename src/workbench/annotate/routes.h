@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "workbench/annotate/events.h"
 #include "workbench/annotate/http.h"
 #include "workbench/annotate/session.h"
 #include "workbench/annotate/windows.h"

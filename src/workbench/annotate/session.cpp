@@ -232,10 +232,7 @@ ClassesChanged Session::change_classes(const ProjectClasses& wanted) {
   check_change(s.painting->classes(), wanted, s.painting->labels().counts(),
                s.painting->now().ever_painted);
   if (wanted != s.painting->classes()) {
-    Record record;
-    record.kind = Record::Kind::kClasses;
-    record.classes = wanted;
-    s.painting->add(std::move(record));
+    s.painting->add({.kind = Record::Kind::kClasses, .classes = wanted});
     if (had_edges != wanted.has_edges()) s.begin_anew();
   }
   ClassesChanged changed{.classes = wanted,

@@ -126,10 +126,7 @@ void Session::State::train_once(std::uint64_t mine) {
   run.record.facts.time = now_as_text();
   const Lock lock(mutex);
   if (orders.generation != mine || orders.stopping) return;
-  Record record;
-  record.kind = Record::Kind::kRun;
-  record.run = run.record;
-  painting->add(std::move(record));
+  painting->add({.kind = Record::Kind::kRun, .run = run.record});
   show(std::move(run));
 }
 
@@ -184,10 +181,7 @@ void Session::State::restore_once(int number, std::uint64_t mine) {
   const Lock lock(mutex);
   if (orders.generation != mine || orders.stopping) return;
   if (number != painting->shown_run()) {
-    Record record;
-    record.kind = Record::Kind::kRestore;
-    record.run.number = number;
-    painting->add(std::move(record));
+    painting->add({.kind = Record::Kind::kRestore, .run = {.number = number}});
   }
   show(std::move(run));
 }
