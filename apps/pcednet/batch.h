@@ -2,7 +2,10 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pcednet/core/error.h"
@@ -65,5 +68,11 @@ class Batch {
 /// Runs `work`; the message of an Error from it gets the file's name as a prefix, unless it has it.
 /// Lack of memory becomes an Error(kFailure).
 void with_name_in_errors(const std::filesystem::path& file, const std::function<void()>& work);
+
+/// Two files of the LAS, LAZ and COPC files among these that lie side by side, seen from above, as
+/// the tiles of a survey do: their boxes touch or overlap at the edge. None if there are none.
+/// Reads headers only, and passes over files that it cannot read.
+std::optional<std::pair<std::filesystem::path, std::filesystem::path>> find_adjoining(
+    std::span<const std::filesystem::path> files);
 
 }  // namespace pcednet::app

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace pcednet::app {
@@ -21,6 +22,31 @@ class BrowserTab {
 
  private:
   std::filesystem::path folder_;
+};
+
+/// A port of 127.0.0.1 and its token.
+struct Address {
+  int port = 0;
+  std::string token = {};
+};
+
+/// The last address of a project, in a file beside it that only this user can read: a page that is
+/// still open can then reconnect to a new start of the program. Where no such file can be made,
+/// nothing is kept, and a new start has another address.
+class KeptAddress {
+ public:
+  explicit KeptAddress(const std::filesystem::path& project);
+
+  /// The address, if the program was running in the last twelve hours.
+  std::optional<Address> read() const;
+
+  void write(const Address& address) const;
+
+  /// Notes that the program is still running.
+  void touch() const;
+
+ private:
+  std::filesystem::path path_;
 };
 
 }  // namespace pcednet::app

@@ -14,6 +14,7 @@
 
 #include "number_options.h"
 #include "pcednet/core/exists_already.h"
+#include "pcednet/core/output_file.h"
 #include "pcednet/core/stopwatch.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/io/text_scan.h"
@@ -205,6 +206,22 @@ void warn_all(const std::filesystem::path& file, const std::vector<std::string>&
 
 void warn_of_losses(const std::string& output, const std::vector<std::string>& losses) {
   for (const std::string& loss : losses) warn(output + " does not keep: " + loss);
+}
+
+namespace fs = std::filesystem;
+
+MadeFolder::MadeFolder(const fs::path& folder) {
+  if (folder.empty()) return;
+  std::error_code ignored;
+  fs::path missing = fs::absolute(folder).lexically_normal();
+  if (!missing.has_filename()) missing = missing.parent_path();  // "out/"
+  for (; !fs::exists(missing, ignored); missing = missing.parent_path()) made_.push_back(missing);
+  make_folder(folder);
+}
+
+MadeFolder::~MadeFolder() {
+  std::error_code ignored;
+  for (const fs::path& folder : made_) fs::remove(folder, ignored);  // not if it holds something
 }
 
 }  // namespace pcednet::app

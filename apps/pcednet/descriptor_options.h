@@ -1,14 +1,11 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/detect/train.h"
 #include "pcednet/gls/scale_space_options.h"
-
-namespace CLI {
-class App;
-}
 
 namespace pcednet::app {
 

@@ -12,8 +12,4 @@ namespace pcednet::app {
 OrderedJson json_of(const std::filesystem::path& path, const formats::CloudFacts& facts);
 std::string text_of(const std::filesystem::path& path, const formats::CloudFacts& facts);
 
-/// Names that both use.
-const char* name_of(ScalarType type);
-const char* name_of(io::E57Field::Kind kind);
-
 }  // namespace pcednet::app

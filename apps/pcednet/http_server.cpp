@@ -20,7 +20,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <chrono>
 #include <limits>
@@ -32,6 +31,7 @@
 #include <thread>
 
 #include "pcednet/core/error.h"
+#include "pcednet/io/text_scan.h"
 
 namespace pcednet::app {
 namespace {
@@ -89,10 +89,7 @@ annotate::Request request_of(const Parser& parser) {
     target.remove_prefix(pair.size());
   }
   for (const auto& field : head) {
-    std::string lower(view_of(field.name_string()));
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    request.headers.emplace(lower, view_of(field.value()));
+    request.headers.emplace(io::lower_case(view_of(field.name_string())), view_of(field.value()));
   }
   request.announced =
       parser.chunked() ? std::nullopt : std::optional(parser.content_length().value_or(0));

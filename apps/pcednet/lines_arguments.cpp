@@ -7,14 +7,41 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "common.h"
-#include "crs_option.h"
 #include "number_options.h"
+#include "pcednet/core/error.h"
 #include "pcednet/io/length_units.h"
+#include "pcednet/io/projection.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::app {
+namespace {
+
+/// The code of "EPSG:25832"; 0 if it is none.
+int code_of(std::string_view word) {
+  if (io::lower_case(word.substr(0, 5)) != "epsg:") return 0;
+  return io::epsg_code(word.substr(5));
+}
+
+/// Adds --crs, which sets `system` to that of a code of EPSG, as io::system_of_code() does.
+CLI::Option* add_crs_option(CLI::App& command, std::optional<io::CoordinateSystem>& system) {
+  return command
+      .add_option_function<std::string>(
+          "--crs",
+          [&system](const std::string& word) {
+            with_name_in_errors("--crs", [&] { system = io::system_of_code(code_of(word)); });
+          },
+          "The coordinate system, such as EPSG:25832, where the file does not name it")
+      ->check(CLI::Validator(
+          [](const std::string& word) {
+            return code_of(word) > 0 ? "" : word + " is not a code such as EPSG:25832";
+          },
+          "EPSG:CODE"));
+}
+
+}  // namespace
 
 void add_line_options(CLI::App& command, lines::LineOptions& options) {
   const CLI::Validator length = length_above_0();

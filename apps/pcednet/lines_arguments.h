@@ -6,13 +6,13 @@
 #include <utility>
 #include <vector>
 
-#include "las_codes.h"
+#include "labelled_files.h"
 #include "models.h"
 #include "pcednet/detect/prepare.h"
 #include "pcednet/io/coordinate_system.h"
 #include "pcednet/io/drawing/drawing.h"
 #include "pcednet/lines/find_lines.h"
-#include "preview_options.h"
+#include "view_options.h"
 
 namespace pcednet::app {
 

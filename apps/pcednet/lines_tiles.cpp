@@ -7,7 +7,7 @@
 #include <cmath>
 #include <unordered_set>
 
-#include "byte_size.h"
+#include "memory_size.h"
 #include "pcednet/cloud/class_table.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/averages.h"
@@ -113,10 +113,8 @@ PointsNearEdges averages_of(PointsNearEdges&& points, const detect::Averaging& a
   prepared.moved = std::move(thinned.positions);
   prepared.positions = prepared.moved;
   prepared.average_of = std::move(thinned.average_of);
-  detect::Classification found = of_averages(prepared, {.classes = std::move(points.classes),
-                                                        .p_sharp = std::move(points.p_sharp),
-                                                        .p_smooth = std::move(points.p_smooth)});
   PointsNearEdges averages;
+  averages.found = of_averages(prepared, std::move(points.found));
   averages.cloud.foreign_elements = std::move(points.cloud.foreign_elements);
   averages.cloud.normals.resize(prepared.positions.size());
   averages.partial.resize(prepared.positions.size());
@@ -126,8 +124,6 @@ PointsNearEdges averages_of(PointsNearEdges&& points, const detect::Averaging& a
     averages.partial[own] |= points.partial[i];
   }
   averages.cloud.positions = std::move(prepared.moved);
-  averages.classes = std::move(found.classes);
-  averages.p_sharp = std::move(found.p_sharp), averages.p_smooth = std::move(found.p_smooth);
   return averages;
 }
 
@@ -164,13 +160,13 @@ PointsNearEdges read_near_edges(const TiledCloud& cloud, std::uint64_t limit,
       chosen.push_back(i);
       near.cloud.positions.push_back(position);
       near.cloud.normals.push_back(normals.empty() ? Vec3::Zero() : normals[i]);
-      near.classes.push_back(findings.found.classes[i]);
-      near.p_sharp.push_back(findings.found.p_sharp[i]);
-      near.p_smooth.push_back(findings.found.p_smooth[i]);
+      near.found.classes.push_back(findings.found.classes[i]);
+      near.found.p_sharp.push_back(findings.found.p_sharp[i]);
+      near.found.p_smooth.push_back(findings.found.p_smooth[i]);
       near.partial.push_back(cubes.are_partial_at(position) ? 1 : 0);
     }
     tiles::append_scans(part, chosen, near.cloud);
-    check_memory(near.classes.size(), averaging, limit);
+    check_memory(near.cloud.size(), averaging, limit);
     stage.advance(part.size());
     return true;
   });

@@ -10,8 +10,7 @@ namespace pcednet::app {
 /// The points of a cloud that its lines come from; in thick noise, averages of them.
 struct PointsNearEdges {
   PointCloud cloud;  ///< positions, normals and scans, and the file's content beside points
-  std::vector<std::uint8_t> classes;
-  std::vector<float> p_sharp, p_smooth;
+  detect::Classification found;
   std::vector<std::uint8_t> partial;  ///< not 0 where points around it may have been left out
 };
 

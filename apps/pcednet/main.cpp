@@ -28,16 +28,6 @@ void check_printed() {
   throw Error(ErrorKind::kFailure, fmt::format("standard output: {}", std::strerror(errno)));
 }
 
-/// The message of an error of usage, in better words than the parser's where there are any.
-std::string why_refused(const CLI::ParseError& error, const CLI::App& app) {
-  const bool lacks = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError);
-  const bool has_more = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
-  std::string why = lacks ? missing_command(app) : "";
-  if (why.empty() && (lacks || has_more)) why = unknown_option(app);
-  if (why.empty() && has_more) why = surplus_input(app);
-  return why.empty() ? error.what() : why;
-}
-
 int run(int argc, char** argv) {
   CLI::App app{
       "pcednet finds edges in 3D point clouds.\n\nExamples:\n"

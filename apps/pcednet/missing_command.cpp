@@ -59,8 +59,7 @@ const CLI::App* last_command(const CLI::App& app) {
   return last;
 }
 
-}  // namespace
-
+/// The option that there is not; empty if the first word that was not expected is no option.
 std::string unknown_option(const CLI::App& app) {
   const CLI::App* last = last_command(app);
   const std::vector<std::string> words = last->remaining();
@@ -77,6 +76,7 @@ std::string unknown_option(const CLI::App& app) {
                              : question(option, names));
 }
 
+/// The first word that is one input too many; empty if the command takes several.
 std::string surplus_input(const CLI::App& app) {
   const CLI::App* last = last_command(app);
   const std::vector<std::string> words = last->remaining();
@@ -89,6 +89,7 @@ std::string surplus_input(const CLI::App& app) {
   return "";
 }
 
+/// What stands in place of a command; empty if no command is missing.
 std::string missing_command(const CLI::App& app) {
   const CLI::App* last = last_command(app);
   if (last->get_require_subcommand_min() == 0) return "";
@@ -102,6 +103,17 @@ std::string missing_command(const CLI::App& app) {
   if (word.starts_with('-')) return fmt::format("a command is missing before the option {}", word);
   return fmt::format("there is no command {}{}{}", after, word,
                      question(word, commands_of(*last), after));
+}
+
+}  // namespace
+
+std::string why_refused(const CLI::ParseError& error, const CLI::App& app) {
+  const bool lacks = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError);
+  const bool has_more = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
+  std::string why = lacks ? missing_command(app) : "";
+  if (why.empty() && (lacks || has_more)) why = unknown_option(app);
+  if (why.empty() && has_more) why = surplus_input(app);
+  return why.empty() ? error.what() : why;
 }
 
 }  // namespace pcednet::app

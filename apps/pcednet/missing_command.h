@@ -6,16 +6,9 @@
 
 namespace pcednet::app {
 
-/// After a parsing that failed: what stands in place of a command, with the command that it may be
-/// meant for; empty if no command is missing.
-std::string missing_command(const CLI::App& app);
-
-/// After a parsing that failed: the option that there is not, with the one that it may be meant
-/// for; empty if the first word that was not expected is no option.
-std::string unknown_option(const CLI::App& app);
-
-/// After a parsing that failed: the first word that is one input too many; empty if the command
-/// takes several.
-std::string surplus_input(const CLI::App& app);
+/// The message of an error of usage, in better words than the parser's where there are any: what
+/// stands in place of a command, an option that there is not, each with the one that it may be
+/// meant for, or an input too many.
+std::string why_refused(const CLI::ParseError& error, const CLI::App& app);
 
 }  // namespace pcednet::app

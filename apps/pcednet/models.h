@@ -1,15 +1,12 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <map>
 #include <string>
 
 #include "pcednet/detect/model.h"
 #include "pcednet/tiles/plan.h"
-
-namespace CLI {
-class App;
-}
 
 namespace pcednet::app {
 

@@ -6,7 +6,7 @@
 
 #include "batch.h"
 #include "common.h"
-#include "preview_options.h"
+#include "view_options.h"
 
 namespace pcednet::app {
 

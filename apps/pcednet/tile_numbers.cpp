@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <set>
+#include <string_view>
 
 #include "pcednet/core/error.h"
 #include "pcednet/tiles/join.h"
@@ -50,6 +52,18 @@ std::string tile_options(const std::vector<std::size_t>& numbers) {
     if (last > first) text += fmt::format("-{}", last);
   }
   return text;
+}
+
+std::string shell_word(const std::string& word) {
+  constexpr std::string_view kPlain = "_./-+=,:@%";
+  const auto is_plain = [&](char c) {
+    const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c & 0x80) != 0;
+    return is_letter || (c >= '0' && c <= '9') || kPlain.find(c) != std::string_view::npos;
+  };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
 }
 
 }  // namespace pcednet::app

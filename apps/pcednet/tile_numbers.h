@@ -13,4 +13,7 @@ std::vector<std::size_t> tile_numbers(const std::vector<std::string>& texts, std
 /// The options that name them (ascending): " --tile 7 --tile 9-15".
 std::string tile_options(const std::vector<std::size_t>& numbers);
 
+/// A word as a shell takes it: in quotes if it has blanks or other characters with a meaning there.
+std::string shell_word(const std::string& word);
+
 }  // namespace pcednet::app

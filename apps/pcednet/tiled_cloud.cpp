@@ -4,23 +4,47 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <string>
 
-#include "byte_size.h"
 #include "common.h"
 #include "descriptor_options.h"
-#include "free_memory.h"
+#include "memory_size.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/parts.h"
 #include "pcednet/io/scanners.h"
+#include "pcednet/io/text_scan.h"
 #include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/layout.h"
 #include "pcednet/tiles/make_plan.h"
-#include "rough_facts.h"
 
 namespace pcednet::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// What the beginning of a point file tells.
+struct RoughFacts {
+  std::uint64_t points = 0;  ///< by the header, otherwise by the length of the first lines
+  bool has_normals = false;  ///< the header, or a heading, names some
+};
+
+std::uint64_t points_by_lines(const io::InputFile& file, const std::string& start) {
+  const auto lines = static_cast<std::uint64_t>(std::count(start.begin(), start.end(), '\n'));
+  return start.empty() ? 0 : file.size() / (start.size() / (lines + 1) + 1);
+}
+
+/// Throws Error(kUnreadable) for a header that cannot be read.
+RoughFacts rough_facts(const io::InputFile& file) {
+  constexpr std::uint64_t kLookedAt = std::uint64_t{1} << 16;
+  const std::string start = file.text(0, kLookedAt);
+  const std::string names = io::lower_case(start);
+  const bool has_normals =
+      names.find("normal_x") != std::string::npos || names.find(" nx") != std::string::npos ||
+      names.find(",nx") != std::string::npos || names.find("\nvn ") != std::string::npos;
+  const formats::Format& format = formats::format_of(file);
+  return {.points = format.points ? format.points(file) : points_by_lines(file, start),
+          .has_normals = has_normals};
+}
 
 /// Larger tiles repeat hardly less of their neighbours.
 constexpr std::uint64_t kMostForTile = std::uint64_t{4} << 30;
@@ -162,6 +186,40 @@ void TiledCloud::each(const Visit& visit) const {
     begin += part.size();
     if (!visit(part, findings)) return;
   }
+}
+
+std::vector<std::string> write_tiled(const std::filesystem::path& output, const TiledCloud& cloud,
+                                     const TiledResult& result, const Progress& progress) {
+  const auto each = [&](const std::function<bool(const PointCloud&)>& visit) {
+    cloud.each([&](PointCloud& part, const tiles::TileFindings& findings) {
+      throw_if_cancelled(&progress);
+      result.add_result(part, findings);
+      return visit(part);
+    });
+  };
+  PointCloud first;
+  each([&](const PointCloud& part) {
+    first = part;
+    return false;
+  });
+  const std::size_t points = cloud.plan().points();
+  io::WriteOptions options = result.write;
+  options.new_normals = !cloud.plan().normals.made;
+  options.progress = &progress;
+  const auto writer = formats::create_parts(
+      output, {.points = points, .first = &first, .each_part = each, .is_las = cloud.is_las()},
+      options);
+  Stage stage(&progress, "write", points);
+  std::size_t before = 0;
+  each([&](const PointCloud& part) {
+    writer->append(part);
+    result.see(part, before);
+    before += part.size();
+    stage.advance(part.size());
+    return true;
+  });
+  writer->commit();
+  return writer->losses;
 }
 
 }  // namespace pcednet::app

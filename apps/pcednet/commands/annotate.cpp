@@ -11,7 +11,6 @@
 #include "browser.h"
 #include "commands.h"
 #include "http_server.h"
-#include "kept_address.h"
 #include "models.h"
 #include "pcednet/core/error.h"
 #include "web_pages.h"

@@ -6,25 +6,22 @@
 #include <memory>
 #include <numeric>
 
-#include "adjoining.h"
 #include "batch.h"
 #include "classify_cloud.h"
-#include "classify_tiles.h"
 #include "commands.h"
-#include "las_codes.h"
-#include "made_folder.h"
+#include "common.h"
+#include "labelled_files.h"
 #include "methods.h"
 #include "models.h"
 #include "pcednet/core/error.h"
-#include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/detect/result_truth.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/gls/scales.h"
-#include "prepare.h"
 #include "result_plan.h"
 #include "stage_clock.h"
-#include "viewpoint.h"
+#include "tiled_cloud.h"
+#include "view_options.h"
 #include "workbench/render/preview.h"
 
 namespace pcednet::app {

@@ -1,18 +1,16 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "batch.h"
 #include "commands.h"
-#include "free_memory.h"
+#include "memory_size.h"
 #include "number_options.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/prepare.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/parts.h"
-#include "pcednet/formats/read_cloud.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/faces.h"
 #include "pcednet/io/parts.h"
@@ -184,7 +182,7 @@ void add_convert(CLI::App& app, Common& common) {
       command
           ->add_option("--spacing", request->spacing,
                        "Thin to points that are at least this far apart, in the unit of the file")
-          ->check(number("a number above 0", [](double v) { return v > 0.0; }));
+          ->check(number_above_0());
   CLI::Option* subsample = command
                                ->add_option("--subsample", request->fraction,
                                             "Keep this share of the points, chosen at random")

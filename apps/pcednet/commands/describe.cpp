@@ -17,7 +17,6 @@
 #include "pcednet/core/version.h"
 #include "pcednet/gls/scale_space.h"
 #include "pcednet/io/npy.h"
-#include "prepare.h"
 
 namespace pcednet::app {
 namespace {

@@ -9,7 +9,7 @@
 #include "classify_cloud.h"
 #include "commands.h"
 #include "evaluate_lines.h"
-#include "las_codes.h"
+#include "labelled_files.h"
 #include "methods.h"
 #include "models.h"
 #include "pcednet/core/error.h"
@@ -17,7 +17,6 @@
 #include "pcednet/eval/predictions.h"
 #include "pcednet/eval/report.h"
 #include "pcednet/formats/format.h"
-#include "prepare.h"
 #include "result_plan.h"
 #include "workbench/truth/read_labelled.h"
 

@@ -1,14 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <string>
 
 #include "batch.h"
 #include "commands.h"
 #include "facts.h"
-#include "model_facts.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/json.h"
 #include "pcednet/core/output_file.h"
@@ -20,6 +18,60 @@
 
 namespace pcednet::app {
 namespace {
+
+bool is_predicted(const detect::EdgeModel& model, std::size_t id) {
+  const auto& classes = model.classes;
+  return std::find(classes.begin(), classes.end(), id) != classes.end();
+}
+
+std::size_t weights_of(const nn::Model& model) {
+  return model.network.parameters.size();
+}
+
+bool is_model_file(const std::filesystem::path& path) {
+  return path.extension() == ".safetensors";
+}
+
+OrderedJson model_json(const std::filesystem::path& path, const detect::EdgeModel& model) {
+  OrderedJson classes = OrderedJson::array();
+  for (std::size_t id = 0; id < model.table.size(); ++id) {
+    classes.push_back({{"id", id},
+                       {"name", model.table[id].name},
+                       {"colour", pcednet::text_of(model.table[id].colour)},
+                       {"predicted", is_predicted(model, id)}});
+  }
+  return {{"file", path.string()},
+          {"format", "model"},
+          {"name", model.name},
+          {"seed", model.seed},
+          {"classes", classes},
+          {"scales", model.descriptor.scales},
+          {"weights", weights_of(model.network)},
+          {"context_weights", model.context ? weights_of(*model.context) : 0}};
+}
+
+std::string model_text(const std::filesystem::path& path, const detect::EdgeModel& model) {
+  std::string text = path.string() + "\n";
+  const auto add = [&](const char* name, const std::string& value) {
+    text += fmt::format("  {:<14} {}\n", name, value);
+  };
+  add("format", "model");
+  add("name", model.name);
+  for (std::size_t id = 0; id < model.table.size(); ++id) {
+    const bool by_geometry = id == kBoundary && has_edges(model.table);
+    add("class", fmt::format("{} {} {}{}", id, pcednet::text_of(model.table[id].colour),
+                             model.table[id].name,
+                             is_predicted(model, id) ? ""
+                             : by_geometry           ? ", found by geometry"
+                                                     : ", not learnt"));
+  }
+  add("scales", std::to_string(model.descriptor.scales));
+  add("weights",
+      fmt::format(
+          "{}{}", weights_of(model.network),
+          model.context ? fmt::format(" and {} for context", weights_of(*model.context)) : ""));
+  return text;
+}
 
 struct InfoRequest {
   std::vector<std::string> inputs;
@@ -94,8 +146,8 @@ void info(const InfoRequest& request, const Common& common) {
     const auto describe = [&] {
       if (is_model_file(path)) {
         const detect::EdgeModel model = detect::load_model(path);
-        files.push_back(json_of(path, model));
-        if (request.json != "-") fmt::print("{}", text_of(path, model));
+        files.push_back(model_json(path, model));
+        if (request.json != "-") fmt::print("{}", model_text(path, model));
         return;
       }
       const formats::CloudFacts facts = facts_of(path, request.all, progress);

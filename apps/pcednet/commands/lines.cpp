@@ -24,9 +24,8 @@
 #include "pcednet/io/las/las.h"
 #include "pcednet/io/projection.h"
 #include "pcednet/tiles/inputs.h"
-#include "prepare.h"
 #include "stage_clock.h"
-#include "viewpoint.h"
+#include "view_options.h"
 #include "workbench/render/preview.h"
 
 namespace pcednet::app {
@@ -39,8 +38,7 @@ using lines::Curve;
 struct LabelledCloud {
   PointCloud cloud;
   detect::PreparedCloud prepared;
-  std::vector<std::uint8_t> classes;
-  std::vector<float> p_sharp, p_smooth;
+  detect::Classification found;
   std::vector<std::uint8_t> partial = {};
   bool given = false;  ///< the labels are those of the file, which was read whole
 };
@@ -86,12 +84,6 @@ void check_edges(const std::string& whose, const ClassTable& table) {
                                              whose, pcednet::names_of(table)));
 }
 
-void take(detect::Classification&& found, LabelledCloud& labelled) {
-  labelled.classes = std::move(found.classes);
-  labelled.p_sharp = std::move(found.p_sharp);
-  labelled.p_smooth = std::move(found.p_smooth);
-}
-
 void add_given_labels(const LinesArguments& arguments, std::vector<std::uint8_t> classes,
                       LabelledCloud& labelled, const Progress& progress) {
   tell_labels(arguments.input, classes);
@@ -101,7 +93,7 @@ void add_given_labels(const LinesArguments& arguments, std::vector<std::uint8_t>
   preparation.average_noise = true;
   labelled.prepared = prepare(arguments.input, cloud, preparation, progress);
   labelled.given = true;
-  take(of_averages(labelled.prepared, std::move(found)), labelled);
+  labelled.found = of_averages(labelled.prepared, std::move(found));
 }
 
 /// Reads the whole cloud, and classifies it if needed.
@@ -133,7 +125,7 @@ void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledC
     classified = classify_cloud(arguments.input, cloud, classifier, clock.progress());
   });
   labelled.prepared = std::move(classified.prepared);
-  take(std::move(classified.found), labelled);
+  labelled.found = std::move(classified.found);
 }
 
 /// Whether a point of the file has a label: reads up to the first that has.
@@ -169,17 +161,15 @@ void read_labelled_in_tiles(const LinesArguments& arguments, const TilesNeeded& 
   const TiledCloud cloud(std::move(request), load_model(arguments.model), clock.progress());
   PointsNearEdges near = read_near_edges(cloud, memory_limit(arguments.memory), clock.progress());
   say(fmt::format("  lines are found from the {} of {} points that are near edges",
-                  near.classes.size(), cloud.plan().points()));
+                  near.cloud.size(), cloud.plan().points()));
   labelled.cloud = std::move(near.cloud);
   labelled.prepared.positions = labelled.cloud.positions;
   labelled.prepared.normals = labelled.cloud.normals;
-  labelled.classes = std::move(near.classes);
-  labelled.p_sharp = std::move(near.p_sharp);
-  labelled.p_smooth = std::move(near.p_smooth);
+  labelled.found = std::move(near.found);
   labelled.partial = std::move(near.partial);
-  if (are_given) tell_labels(arguments.input, labelled.classes);
-  if (arguments.lines.boundaries && std::find(labelled.classes.begin(), labelled.classes.end(),
-                                              kBoundary) == labelled.classes.end()) {
+  const std::vector<std::uint8_t>& classes = labelled.found.classes;
+  if (are_given) tell_labels(arguments.input, classes);
+  if (arguments.lines.boundaries && std::ranges::count(classes, kBoundary) == 0) {
     warn(
         fmt::format("{}: no point is of class boundary (3); in tiles, boundaries are found only "
                     "around such points",
@@ -198,9 +188,9 @@ std::vector<Curve> find_curves(const LinesArguments& arguments, const LabelledCl
   with_name_in_errors(arguments.input, [&] {
     curves = lines::find_lines({.positions = labelled.prepared.positions,
                                 .normals = labelled.prepared.normals,
-                                .classes = labelled.classes,
-                                .p_sharp = labelled.p_sharp,
-                                .p_smooth = labelled.p_smooth,
+                                .classes = labelled.found.classes,
+                                .p_sharp = labelled.found.p_sharp,
+                                .p_smooth = labelled.found.p_smooth,
                                 .partial = labelled.partial,
                                 .scanners = scanners,
                                 .curve = labelled.prepared.curve},
@@ -290,7 +280,7 @@ void run(LinesArguments arguments, const Common& common) {
         arguments.preview.path, cloud, {},
         {.view_direction = arguments.preview.direction, .overwrite = common.overwrite()}, curves);
   }
-  report_lines(arguments, scale, curves, left_out, labelled.classes);
+  report_lines(arguments, scale, curves, left_out, labelled.found.classes);
   say("  seconds: " + clock.seconds());
   report_outputs(arguments, curves);
   if (!arguments.preview.path.empty()) say("  -> " + arguments.preview.path);

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +14,7 @@
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/normals/neighbour_count.h"
 #include "pcednet/normals/prepare.h"
+#include "view_options.h"
 
 namespace pcednet::app {
 namespace {
@@ -27,11 +26,6 @@ struct NormalsRequest {
   std::vector<double> viewpoint;
   bool keep = false;
   bool flip = false;
-
-  std::optional<Vec3> eye() const {
-    if (viewpoint.empty()) return std::nullopt;
-    return Vec3(viewpoint[0], viewpoint[1], viewpoint[2]);
-  }
 };
 
 /// New normals, or those of the cloud with new signs.
@@ -45,7 +39,7 @@ normals::PreparedNormals make_normals(const NormalsRequest& request, const Point
   normals::PreparedNormals prepared;
   with_name_in_errors(request.input, [&] {
     const normals::OrientedNormalsOptions options = {normals::given_neighbours(request.neighbours),
-                                                     request.eye()};
+                                                     place_in(request.viewpoint)};
     prepared = request.keep
                    ? normals::complete_and_orient_normals(cloud.positions, cloud.normals, options,
                                                           &progress)
@@ -93,7 +87,7 @@ void run(const NormalsRequest& request, const Common& common) {
   formats::check_positions(request.output, cloud);
   normals::PreparedNormals prepared = make_normals(request, cloud, console_progress(common));
   if (const auto scanners = scanner_of_points(cloud);
-      !request.keep && !request.eye() && !scanners.empty()) {
+      !request.keep && request.viewpoint.empty() && !scanners.empty()) {
     const std::size_t faced = normals::face_scanners(cloud.positions, prepared.normals, scanners);
     say(fmt::format("{}: {} points turned towards their scanner", request.input, faced));
   }
@@ -128,11 +122,8 @@ void add_normals(CLI::App& app, Common& common) {
       "--keep", request->keep,
       "Keep the normals of the file except for their signs; estimate only missing ones");
   command->add_flag("--flip", request->flip, "Flip all normals at the end, to point inwards");
-  command
-      ->add_option("--viewpoint", request->viewpoint,
-                   "Turn every normal to face this position (X Y Z) instead of outwards")
-      ->expected(3)
-      ->check(number("a finite number", [](double) { return true; }));
+  add_viewpoint_option(*command, request->viewpoint,
+                       "Turn every normal to face this position (X Y Z) instead of outwards");
   command->callback([request, &common] { run(*request, common); });
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -14,9 +13,8 @@
 
 #include "batch.h"
 #include "commands.h"
+#include "common.h"
 #include "descriptor_options.h"
-#include "fee.h"
-#include "made_folder.h"
 #include "methods.h"
 #include "models.h"
 #include "number_options.h"

@@ -5,8 +5,8 @@
 #include <memory>
 #include <optional>
 
-#include "byte_size.h"
 #include "commands.h"
+#include "memory_size.h"
 #include "models.h"
 #include "pcednet/core/stopwatch.h"
 #include "pcednet/formats/format.h"
@@ -16,10 +16,8 @@
 #include "pcednet/tiles/plan.h"
 #include "pcednet/tiles/run_tile.h"
 #include "pcednet/tiles/tile_file.h"
-#include "shell_word.h"
 #include "tile_jobs.h"
 #include "tile_numbers.h"
-#include "tile_queue.h"
 
 namespace pcednet::app {
 namespace {

@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "batch.h"
-#include "byte_size.h"
+#include "classify_cloud.h"
 #include "commands.h"
 #include "descriptor_options.h"
+#include "memory_size.h"
 #include "models.h"
 #include "number_options.h"
 #include "pcednet/core/error.h"
@@ -17,10 +18,9 @@
 #include "pcednet/tiles/make_plan.h"
 #include "pcednet/tiles/plan.h"
 #include "pcednet/tiles/tile_file.h"
-#include "prepare.h"
 #include "result_plan.h"
-#include "shell_word.h"
-#include "viewpoint.h"
+#include "tile_numbers.h"
+#include "view_options.h"
 
 namespace pcednet::app {
 namespace {

@@ -4,7 +4,6 @@
 #include <array>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +14,6 @@
 #include "pcednet/tiles/join.h"
 #include "pcednet/tiles/plan.h"
 #include "pcednet/tiles/tile_file.h"
-#include "shell_word.h"
 #include "tile_numbers.h"
 
 namespace pcednet::app {

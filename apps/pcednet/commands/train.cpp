@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "batch.h"
+#include "classify_cloud.h"
 #include "commands.h"
 #include "descriptor_options.h"
 #include "labelled_files.h"
@@ -17,7 +18,6 @@
 #include "pcednet/detect/rounding.h"
 #include "pcednet/detect/train.h"
 #include "pcednet/io/text_scan.h"
-#include "prepare.h"
 #include "stage_clock.h"
 #include "workbench/annotate/adapt.h"
 #include "workbench/annotate/known_files.h"
