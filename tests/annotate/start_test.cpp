@@ -10,6 +10,7 @@
 #include "pcednet/core/random_vectors.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/formats/write_cloud.h"
+#include "pcednet/io/faces.h"
 #include "support/expect_error.h"
 #include "support/own_folder.h"
 #include "workbench/annotate/known_files.h"
@@ -165,6 +166,18 @@ TEST(WarningsOfAScene, TellOfRoundedCoordinates) {
   const auto warnings = load_scene(path)->warnings;
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find("are rounded to steps of 0.5"), std::string::npos) << warnings[0];
+  fs::remove(path);
+}
+
+TEST(WarningsOfAScene, TellOfFacesAndOfEstimatedNormals) {
+  const fs::path path = fs::path(testing::TempDir()) / "pcednet_faces.ply";
+  PointCloud cloud = cube_without_normals(3000);
+  cloud.foreign_elements.push_back(io::make_face_element({3, 3}, {0, 1, 2, 1, 2, 3}));
+  formats::write_cloud(path, cloud, {.overwrite = Overwrite::kYes});
+  const auto notes = notes_of(*load_scene(path));
+  ASSERT_EQ(notes.size(), 2u);
+  EXPECT_TRUE(notes[0].starts_with("2 faces are not used, only their vertices")) << notes[0];
+  EXPECT_TRUE(notes[1].starts_with("no normals in the file: estimated")) << notes[1];
   fs::remove(path);
 }
 

@@ -131,6 +131,29 @@ test("offers nothing of a model as long as there is none", () =>
     assert.equal(await menu.getAttribute("open"), null);
   }));
 
+test("a page that opens after the cloud was loaded tells of the cloud, too, and the terminal does", async () => {
+  const input = path.join(folder, "mesh.obj");
+  fs.writeFileSync(input, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
+  const { program, address } = await serve([input]);
+  let told = "";
+  program.stderr.on("data", (data) => (told += data));
+  const few = await its.browser.newPage();
+  try {
+    const { origin, search } = new URL(address);
+    for (let state = ""; state !== "ready"; )
+      ({ state } = await (await fetch(`${origin}/api/session${search}`)).json());
+    await few.goto(address);
+    await few.locator(".notice.warning", { hasText: "2 faces are not used, only their vertices" }).waitFor();
+    await few.locator(".notice.warning", { hasText: "no normals in the file: estimated" }).waitFor();
+    assert.match(told, /warning: mesh\.obj: 2 faces are not used/);
+  } finally {
+    await few.close();
+    const ended = once(program, "exit");
+    program.kill("SIGKILL");
+    await ended;
+  }
+});
+
 test("shows a prediction that comes while the page opens", () =>
   withThree(["--model", "none", "--project", path.join(folder, "opening.json")], async (few, address) => {
     const { origin, searchParams } = new URL(address);

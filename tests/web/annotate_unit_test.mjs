@@ -403,6 +403,13 @@ test("tells coordinates of a national grid apart", () => {
   assert.equal(format.coordinate(652012.34567, 40), "652012.35");
   assert.equal(format.coordinate(-0.5, 1), "-0.500");
   assert.equal(format.coordinate(5, 0), "5.000");
+  assert.deepEqual([0, 1234.5, 0.001234, 0.0000689, -2.5e-7].map(format.length), [
+    "0",
+    "1230",
+    "0.00123",
+    "6.89e-5",
+    "-2.5e-7",
+  ]);
 });
 
 test("names the stages of loading, and leaves a sentence as it is", () => {

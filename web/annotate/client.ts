@@ -256,6 +256,7 @@ export class Client {
       ...resumed(view, store.now),
     });
     this.stage.open(session, hasPrediction, view?.pose);
+    if (!view) for (const note of session.notes) this.words.warn(note);
     if (store.now.mode === "feature") this.stage.loader.refresh("values");
   }
 

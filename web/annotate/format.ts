@@ -10,8 +10,11 @@ export const seconds = (s: number): string => (s < 10 ? `${s.toFixed(2)} s` : `$
 export const coordinate = (value: number, range: number): string =>
   value.toFixed(Math.min(Math.max(3 - Math.floor(Math.log10(range || 1)), 0), 12));
 
-/** A length with three digits. */
-export const length = (value: number): string => String(Number(value.toPrecision(3)));
+/** A length with three digits; small ones are written as 6.89e-5, which fits where 0.0000689 does not. */
+export const length = (value: number): string => {
+  const rounded = Number(value.toPrecision(3));
+  return rounded !== 0 && Math.abs(rounded) < 1e-3 ? rounded.toExponential() : String(rounded);
+};
 
 const STAGES: Record<string, string> = {
   read: "reading the file",

@@ -94,6 +94,8 @@ export interface Session extends Classes {
   /** What settings.start may be besides "random". */
   starts: Start[];
   nodes: NodeInfo[];
+  /** What the user should know of the cloud. */
+  notes: string[];
   strokes: number;
   undo: number;
   redo: number;

@@ -157,8 +157,10 @@ annotate::SessionOptions session_options(const AnnotateArguments& arguments, con
   add_starts(options, arguments);
   options.emit = [&events](const annotate::Event& event) {
     events.add(event);
-    if (std::holds_alternative<annotate::Ready>(event))
+    if (const auto* ready = std::get_if<annotate::Ready>(&event)) {
+      for (const std::string& note : ready->notes) warn(note);
       say("ready; Ctrl-C ends the program, and all strokes are kept");
+    }
   };
   return options;
 }

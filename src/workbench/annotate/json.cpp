@@ -73,6 +73,7 @@ void describe_scene(const Scene& scene, Json& json) {
   json["has_colours"] = !scene.cloud.colours.empty();
   json["normals"] = scene.prepared.made.empty() ? "file" : "estimated";
   json["nodes"] = nodes_of(scene);
+  json["notes"] = notes_of(scene);
 }
 
 Json json_of(const HeldOut& held_out) {

@@ -89,7 +89,10 @@ struct StageProgress {
   std::string stage = {};
   double fraction = 0;
 };
-struct Ready {};
+struct Ready {
+  std::vector<std::string> notes =
+      {};  ///< of all clouds, by their names; each page has those of its cloud
+};
 struct Problem {
   std::string message = {};
 };

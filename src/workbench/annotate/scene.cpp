@@ -13,6 +13,7 @@
 #include "pcednet/formats/cloud_facts.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/gls/scales.h"
+#include "pcednet/io/faces.h"
 #include "pcednet/spatial/curve_order.h"
 #include "workbench/annotate/not_found.h"
 
@@ -21,6 +22,16 @@ namespace {
 
 /// With a ratio, a range begins at the mean of the middle half of the spacings.
 constexpr double kAnyRatio = 10.0;
+
+/// Vertices of a mesh are seldom the cloud that was meant.
+void add_note_on_faces(Scene& scene) {
+  const std::size_t faces = io::face_count(scene.cloud);
+  if (faces == 0) return;
+  scene.warnings.push_back(
+      fmt::format("{} faces are not used, only their vertices: pcednet convert --sample N samples "
+                  "points on faces",
+                  faces));
+}
 
 /// Of coordinates that are rounded to more than the spacing.
 void add_note_on_float(Scene& scene) {
@@ -49,6 +60,7 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
   stage.advance();
   scene->cloud = std::move(loaded.cloud);
   scene->warnings = std::move(loaded.warnings);
+  add_note_on_faces(*scene);
   scene->input = {as_utf8(input.filename().string()), digest_of_file(input), scene->cloud.size()};
   with_name_in_errors(input.string(),
                       [&] { scene->prepared = detect::prepare(scene->cloud, {}, progress); });
@@ -77,6 +89,12 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
                                                scene->origin, scene->spacing);
   stage.advance();
   return scene;
+}
+
+std::vector<std::string> notes_of(const Scene& scene) {
+  std::vector<std::string> notes = scene.warnings;
+  notes.insert(notes.end(), scene.prepared.notes.begin(), scene.prepared.notes.end());
+  return notes;
 }
 
 std::shared_ptr<const Prediction> make_prediction(const Scene& scene, detect::EdgeModel model,

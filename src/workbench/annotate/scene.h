@@ -32,6 +32,9 @@ struct Scene {
 std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
                                         const Progress* progress = nullptr);
 
+/// What the user should know of it: the warnings and the notes of preparing it.
+std::vector<std::string> notes_of(const Scene& scene);
+
 /// A model's prediction for a cloud, with its boundary.
 struct Prediction {
   detect::EdgeModel model = {};

@@ -123,14 +123,13 @@ void Session::State::load() {
     loading.stage = "ready";
   }
   changed.notify_all();
-  emit(Ready{});
+  Ready ready;
   for (const auto& scene : scenes) {
-    for (const auto* notes : {&scene->warnings, &scene->prepared.notes}) {
-      for (const std::string& note : *notes) {
-        emit(Problem{scenes.size() > 1 ? scene->input.name + ": " + note : note});
-      }
+    for (const std::string& note : notes_of(*scene)) {
+      ready.notes.push_back(scene->input.name + ": " + note);
     }
   }
+  emit(ready);
 }
 
 /// The descriptor of the project's start model.
