@@ -133,6 +133,20 @@ TEST(Perturb, SubsampleKeepsAllThatBelongsToAPoint) {
   EXPECT_EQ(elements[0].bytes, surveyed.foreign_elements[1].bytes);
 }
 
+TEST(Perturb, SelectKeepsThePointsThatAreNamed) {
+  const PointCloud cloud = box_of_points(20);
+  const std::vector<std::uint32_t> points = {19, 0, 7, 7};
+  const PointCloud kept = select(cloud, points);
+  check_consistent(kept);
+  ASSERT_EQ(kept.size(), points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(kept.positions[i], cloud.positions[points[i]]);
+    EXPECT_EQ(kept.labels[i], cloud.labels[points[i]]);
+    EXPECT_EQ(kept.attributes[0].value(i), cloud.attributes[0].value(points[i]));
+  }
+  EXPECT_TRUE(select(cloud, {}).empty());
+}
+
 TEST(Perturb, SubsamplesAreUniformAndNested) {
   const PointCloud cloud = box_of_points(20000);
   const auto numbers = [&](double fraction) {

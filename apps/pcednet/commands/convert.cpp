@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "batch.h"
@@ -14,6 +15,7 @@
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/faces.h"
 #include "pcednet/io/parts.h"
+#include "point_filter.h"
 #include "workbench/shapes/mesh_samples.h"
 #include "workbench/shapes/perturb.h"
 
@@ -29,12 +31,18 @@ struct ConvertRequest {
   std::uint64_t seed = 1;
   std::size_t samples = 0;
   bool vertex_normals = false;
+  PointFilter filter = {};
 };
+
+/// Whether points are moved, made, or chosen with regard to others.
+bool perturbs(const ConvertRequest& request) {
+  return request.samples > 0 || request.noise > 0.0 || request.spacing > 0.0 ||
+         request.fraction < 1.0;
+}
 
 /// Whether the points of the output are not those of the input.
 bool changes_points(const ConvertRequest& request) {
-  return request.samples > 0 || request.noise > 0.0 || request.spacing > 0.0 ||
-         request.fraction < 1.0;
+  return perturbs(request) || request.filter.is_on();
 }
 
 /// The most points to sample: as many as an index of 32 bits can number.
@@ -61,7 +69,7 @@ void sample(const ConvertRequest& request, const Progress& progress, PointCloud&
 
 void perturb(const ConvertRequest& request, const Progress& progress, PointCloud& cloud) {
   // Estimates are of the points before.
-  if (changes_points(request)) detect::set_estimated_normals(cloud, false);
+  if (perturbs(request)) detect::set_estimated_normals(cloud, false);
   if (request.noise > 0.0) {
     with_name_in_errors(request.input, [&] {
       cloud = shapes::add_gaussian_noise(std::move(cloud),
@@ -77,13 +85,13 @@ void perturb(const ConvertRequest& request, const Progress& progress, PointCloud
 }
 
 /// The parts of a file in order, beginning with one that has been read.
-io::EachPart each_part_of(const io::PartReader& reader, const PointCloud& first,
+io::EachPart each_part_of(const FilteredParts& parts, const PointCloud& first,
                           const Progress& progress) {
   return [&](const auto& visit) {
     bool more = visit(first);
-    for (std::size_t p = 1; p < reader.parts() && more; ++p) {
+    for (std::size_t p = 1; p < parts.parts() && more; ++p) {
       throw_if_cancelled(&progress);
-      PointCloud part = reader.read(p);
+      PointCloud part = parts.read(p);
       io::PartTally known;
       io::finish_part(part, known);
       more = visit(part);
@@ -91,29 +99,36 @@ io::EachPart each_part_of(const io::PartReader& reader, const PointCloud& first,
   };
 }
 
+void say_points(const ConvertRequest& request, std::size_t written, std::size_t read) {
+  say(fmt::format("{}: {} points{}", request.output, written,
+                  request.filter.is_on() ? fmt::format(" of {}", read) : ""));
+}
+
 /// Converts in memory that does not grow with the file; false if one of the formats, or another
 /// option, needs the whole cloud.
 bool convert_in_parts(const ConvertRequest& request, const Common& common) {
-  if (changes_points(request)) return false;
+  if (perturbs(request)) return false;
   const auto reader = formats::open_parts(request.input);
   if (!reader) return false;
   const Progress progress = console_progress(common);
+  std::optional<FilteredParts> parts;
+  with_name_in_errors(request.input, [&] { parts.emplace(*reader, request.filter, progress); });
   io::PartTally tally;
-  PointCloud first = reader->read(0);
+  PointCloud first = parts->read(0);
   io::finish_part(first, tally);
-  const io::PartOutline outline{.points = reader->points(),
+  const io::PartOutline outline{.points = parts->points(),
                                 .first = &first,
-                                .each_part = each_part_of(*reader, first, progress),
+                                .each_part = each_part_of(*parts, first, progress),
                                 .is_las = reader->is_las()};
   const auto writer = formats::create_parts(
       request.output, outline,
       {.overwrite = common.overwrite(), .ascii = request.ascii, .progress = &progress});
   if (!writer) return false;
-  Stage stage(&progress, "convert", reader->points());
+  Stage stage(&progress, "convert", parts->points());
   writer->append(first);
   stage.advance(first.size());
-  for (std::size_t p = 1; p < reader->parts(); ++p) {
-    PointCloud part = reader->read(p);
+  for (std::size_t p = 1; p < parts->parts(); ++p) {
+    PointCloud part = parts->read(p);
     io::finish_part(part, tally);
     writer->append(part);
     stage.advance(part.size());
@@ -122,7 +137,7 @@ bool convert_in_parts(const ConvertRequest& request, const Common& common) {
   warn_all(request.input, reader->warnings);
   warn_all(request.input, io::warnings_of(tally));
   warn_of_losses(request.output, writer->losses);
-  say(fmt::format("{}: {} points", request.output, tally.points));
+  say_points(request, tally.points, reader->points());
   return true;
 }
 
@@ -141,26 +156,34 @@ void convert(const ConvertRequest& request, const Common& common) {
   if (request.samples > 0) {
     with_name_in_errors(request.input, [&] { sample(request, progress, loaded.cloud); });
   }
+  const std::size_t points = loaded.cloud.size();
+  with_name_in_errors(request.input, [&] {
+    loaded.cloud = filtered(std::move(loaded.cloud), request.filter);
+    check_some_kept(loaded.cloud.size(), request.filter);
+  });
   perturb(request, progress, loaded.cloud);
   throw_if_cancelled(&progress);
   warn_of_losses(request.output, formats::losses(request.output, loaded.cloud));
   formats::write_cloud(
       request.output, loaded.cloud,
       {.overwrite = common.overwrite(), .ascii = request.ascii, .progress = &progress});
-  say(fmt::format("{}: {} points", request.output, loaded.cloud.size()));
+  say_points(request, loaded.cloud.size(), points);
 }
 
 }  // namespace
 
 void add_convert(CLI::App& app, Common& common) {
-  CLI::App* command = add_command(app, common, "convert", "Convert a point file to another format",
-                                  "pcednet convert scan.xyz -o scan.ply\n"
-                                  "pcednet convert scan.ply -o scan.pcd\n"
-                                  "pcednet convert scan.laz -o scan.copc.laz\n"
-                                  "pcednet convert scan.ply -o readable.ply --ascii\n"
-                                  "pcednet convert scan.ptx -o even.ply --spacing 0.005\n"
-                                  "pcednet convert part.stl -o part.ply --sample 100000\n"
-                                  "pcednet convert scan.ply -o worse.ply --noise 0.004 --seed 7");
+  CLI::App* command =
+      add_command(app, common, "convert", "Convert a point file to another format",
+                  "pcednet convert scan.xyz -o scan.ply\n"
+                  "pcednet convert scan.ply -o scan.pcd\n"
+                  "pcednet convert scan.laz -o scan.copc.laz\n"
+                  "pcednet convert scan.ply -o readable.ply --ascii\n"
+                  "pcednet convert scan.ptx -o even.ply --spacing 0.005\n"
+                  "pcednet convert city.laz -o clean.laz --drop-class 7,18 --drop-flag withheld\n"
+                  "pcednet convert city.laz -o roofs.laz --keep-class 6\n"
+                  "pcednet convert part.stl -o part.ply --sample 100000\n"
+                  "pcednet convert scan.ply -o worse.ply --noise 0.004 --seed 7");
   auto request = std::make_shared<ConvertRequest>();
   command->add_option("input", request->input, "Input file")->required();
   command
@@ -168,6 +191,7 @@ void add_convert(CLI::App& app, Common& common) {
                    "Output file: " + formats::extensions_written(" or "))
       ->required();
   command->add_flag("--ascii", request->ascii, "Write .ply and .pcd as text");
+  add_filter_options(*command, request->filter);
   CLI::Option* noise = command
                            ->add_option("--noise", request->noise,
                                         "Add Gaussian noise with this standard deviation, as a "

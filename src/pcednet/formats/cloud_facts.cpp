@@ -185,7 +185,11 @@ std::vector<std::string> find_problems(const CloudFacts& facts) {
       return found == facts.las->points_by_class.end() ? 0 : found->second;
     };
     add(noise(7) + noise(18),
-        "points are of the classes 7 and 18, noise: labelled like all others");
+        "points are of the classes 7 and 18, noise: labelled like all others; convert --drop-class "
+        "7,18 leaves them out");
+    add(facts.las->withheld,
+        "points are withheld (deleted): labelled like all others; convert --drop-flag withheld "
+        "leaves them out");
   }
   if (facts.points > 0 && !facts.has_normals) {
     problems.emplace_back("no normals: they will be estimated");

@@ -61,8 +61,21 @@ Attribute chosen(const Attribute& all, std::span<const std::uint32_t> points) {
   return kept;
 }
 
-/// These points with all their fields.
-PointCloud chosen(const PointCloud& cloud, std::span<const std::uint32_t> points) {
+/// All points in random order; those at one place keep theirs.
+std::vector<std::uint32_t> by_lot(const PointCloud& cloud, std::uint64_t seed) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> lots(cloud.size());
+  for (std::uint32_t i = 0; i < lots.size(); ++i) {
+    lots[i] = {random_at(cloud.positions[i], seed, kChoice).next(), i};
+  }
+  std::sort(lots.begin(), lots.end());
+  std::vector<std::uint32_t> points(lots.size());
+  std::transform(lots.begin(), lots.end(), points.begin(), [](auto lot) { return lot.second; });
+  return points;
+}
+
+}  // namespace
+
+PointCloud select(const PointCloud& cloud, std::span<const std::uint32_t> points) {
   PointCloud kept;
   kept.scanners = cloud.scanners;
   kept.positions = chosen(cloud.positions, points);
@@ -81,20 +94,6 @@ PointCloud chosen(const PointCloud& cloud, std::span<const std::uint32_t> points
   kept.comments = cloud.comments;
   return kept;
 }
-
-/// All points in random order; those at one place keep theirs.
-std::vector<std::uint32_t> by_lot(const PointCloud& cloud, std::uint64_t seed) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> lots(cloud.size());
-  for (std::uint32_t i = 0; i < lots.size(); ++i) {
-    lots[i] = {random_at(cloud.positions[i], seed, kChoice).next(), i};
-  }
-  std::sort(lots.begin(), lots.end());
-  std::vector<std::uint32_t> points(lots.size());
-  std::transform(lots.begin(), lots.end(), points.begin(), [](auto lot) { return lot.second; });
-  return points;
-}
-
-}  // namespace
 
 PointCloud add_gaussian_noise(PointCloud cloud, const NoiseOptions& options) {
   if (!(options.sigma >= 0.0) || !std::isfinite(options.sigma)) {
@@ -130,7 +129,7 @@ PointCloud subsample(const PointCloud& cloud, const SubsampleOptions& options) {
   points.resize(
       static_cast<std::size_t>(std::llround(options.fraction * static_cast<double>(cloud.size()))));
   std::sort(points.begin(), points.end());
-  PointCloud kept = chosen(cloud, points);
+  PointCloud kept = select(cloud, points);
   kept.comments.push_back(
       fmt::format("subsample: {} of the points, seed {}", options.fraction, options.seed));
   return kept;
@@ -155,7 +154,7 @@ PointCloud thin(const PointCloud& cloud, const ThinOptions& options, const Progr
     for (const spatial::Neighbour& other : near) dropped[other.index] = 1;
   }
   std::sort(points.begin(), points.end());
-  PointCloud kept = chosen(cloud, points);
+  PointCloud kept = select(cloud, points);
   kept.comments.push_back(
       fmt::format("thinned: points at least {} apart, seed {}", options.spacing, options.seed));
   return kept;

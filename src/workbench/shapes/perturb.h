@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/progress.h"
@@ -23,14 +24,16 @@ struct NoiseOptions {
 /// noise is to be along normals and there are none.
 PointCloud add_gaussian_noise(PointCloud cloud, const NoiseOptions& options = {});
 
+/// These points of `cloud`, by their numbers, with all their fields. The header and records of LAS
+/// stay; other foreign elements (faces, which would name removed points) are left out.
+PointCloud select(const PointCloud& cloud, std::span<const std::uint32_t> points);
+
 struct SubsampleOptions {
   double fraction = 0.5;  ///< of the points to keep, in [0, 1]
   std::uint64_t seed = 1;
 };
 
-/// round(fraction x points) random points of `cloud`, in their order, with all their fields. The
-/// header and records of LAS stay; other foreign elements (faces, which would name removed points)
-/// are left out.
+/// round(fraction x points) random points of `cloud`, in their order, with what select() keeps.
 /// With the same seed a smaller fraction keeps a subset of the points of a larger one. Throws
 /// Error(kUsage) for a fraction outside [0, 1].
 PointCloud subsample(const PointCloud& cloud, const SubsampleOptions& options = {});
@@ -41,7 +44,7 @@ struct ThinOptions {
 };
 
 /// Points of `cloud`, tried in random order, that are `spacing` or more apart, so that each point
-/// left out is nearer to one of them; in their order, with what subsample() keeps. Points that are
+/// left out is nearer to one of them; in their order, with what select() keeps. Points that are
 /// not finite are left out. Throws Error(kUsage) for a spacing that is not positive or not finite,
 /// Error(kCancelled) when `progress` asks to cancel.
 PointCloud thin(const PointCloud& cloud, const ThinOptions& options,

@@ -101,6 +101,9 @@ LasFacts las_facts(const InputFile& file) {
 void count_points(const PointCloud& points, LasFacts& facts) {
   count_values(points, "ReturnNumber", facts.points_by_return);
   count_values(points, "Classification", facts.points_by_class);
+  std::map<int, std::size_t> withheld;
+  count_values(points, "Withheld", withheld);
+  facts.withheld += withheld[1];
 }
 
 }  // namespace pcednet::io

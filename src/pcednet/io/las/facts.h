@@ -33,6 +33,7 @@ struct LasFacts {
   std::vector<Record> records;    ///< extended ones last
   std::vector<std::string> extra_bytes;
   std::map<int, std::size_t> points_by_return, points_by_class;
+  std::size_t withheld = 0;  ///< points marked as deleted
 };
 
 /// The description of the points in the header and the records of a LAS or LAZ file.
