@@ -128,6 +128,7 @@ OrderedJson json_of(const io::LasFacts& las) {
           {"created_year", las.created_year},
           {"scale", las.scale},
           {"offset", las.offset},
+          {"coordinate_system_code", las.code},
           {"coordinate_system", las.coordinate_system},
           {"records", records},
           {"extra_bytes", las.extra_bytes},
@@ -261,6 +262,8 @@ void add(const io::LasFacts& las, Lines& lines) {
                                    las.created_day, las.created_year));
   lines.add("scale", spelled_list(las.scale));
   lines.add("offset", spelled_list(las.offset));
+  const bool is_known = !las.code.empty() || !las.coordinate_system.empty();
+  add_known("coordinates", is_known ? las.code : "of no coordinate system that the file names");
   add_known("coordinates", las.coordinate_system);
   for (const io::LasFacts::Record& record : las.records) {
     lines.add("record", fmt::format("{} {}, {} bytes, {}", record.user_id, record.record_id,

@@ -3,11 +3,13 @@ import json
 import os
 import re
 import signal
+import struct
 import subprocess
 import unittest
 
 import numpy as np
 
+from las_test import FORMATS, las, random_rows, vlr
 from support import PROGRAM, CliTest, cube, run, write_ply
 
 
@@ -49,6 +51,20 @@ class Info(CliTest):
                       " ".join(self.info(self.folder / "far.ply")[0]["problems"]))
         write_ply(self.folder / "twice.ply", np.vstack([p, p]) + [9, 9, 0], np.vstack([n, n]))
         self.assertNotIn("rounded", " ".join(self.info(self.folder / "twice.ply")[0]["problems"]))
+
+    def test_names_the_coordinate_system_by_its_code(self):
+        keys = struct.pack("<16H", 1, 1, 0, 3, 1024, 0, 1, 1, 3072, 0, 1, 25832, 4096, 0, 1, 7837)
+        wkt = b'PROJCS["a",GEOGCS["b"],AUTHORITY["EPSG","25833"]]\0'
+        path = self.folder / "a.las"
+        for records, code, said in [
+                ([], "", "coordinates    of no coordinate system that the file names\n"),
+                ([(34735, keys)], "EPSG:25832+7837", "coordinates    EPSG:25832+7837\n"),
+                ([(2112, wkt)], "EPSG:25833", "coordinates    EPSG:25833\n  coordinates    PROJCS[")]:
+            with self.subTest(code=code):
+                vlrs = [vlr(b"LASF_Projection", number, data) for number, data in records]
+                path.write_bytes(las(6, random_rows(FORMATS[6], 20), vlrs))
+                self.assertEqual(self.info(path)[0]["las"]["coordinate_system_code"], code)
+                self.assertIn(said, run("info", path).stdout)
 
     def test_outliers_are_counted(self):
         """As by brute force: fewer than three others within ten spacings; cells hold many points or few."""

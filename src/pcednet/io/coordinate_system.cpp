@@ -1,5 +1,7 @@
 #include "pcednet/io/coordinate_system.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -80,6 +82,12 @@ int epsg_of(const WktNode& node) {
 int epsg_code(std::string_view word) {
   const auto code = parse_count(word);
   return code && *code <= std::numeric_limits<int>::max() ? static_cast<int>(*code) : 0;
+}
+
+std::string code_text(const CoordinateSystem& system) {
+  if (system.epsg <= 0) return {};
+  return fmt::format("EPSG:{}{}", system.epsg,
+                     system.vertical_epsg > 0 ? fmt::format("+{}", system.vertical_epsg) : "");
 }
 
 CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {

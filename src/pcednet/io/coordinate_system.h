@@ -23,6 +23,10 @@ inline constexpr int kLeastEpsgCode = 1024, kMostEpsgCode = 32766;
 /// The code that a word of digits stands for; 0 if it stands for none.
 int epsg_code(std::string_view word);
 
+/// The codes as people write them, with that of the heights: "EPSG:25832+7837"; empty if `epsg` is
+/// unknown.
+std::string code_text(const CoordinateSystem& system);
+
 /// The system that a definition describes: its code is that of the outermost EPSG AUTHORITY or ID;
 /// of a compound system without one, the codes are those of its parts. That of heights alone has no
 /// unit and no code but that of the heights.

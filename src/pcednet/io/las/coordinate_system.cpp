@@ -105,11 +105,8 @@ std::vector<std::string> las_element_losses(const PointCloud& cloud) {
   const LasFile file = attached_las_file(cloud);
   const CoordinateSystem system = coordinate_system_of(file);
   if (system.epsg > 0 || !system.wkt.empty() || has_geo_keys(file)) {
-    std::string lost = "coordinate system";
-    if (system.epsg > 0) lost += fmt::format(" EPSG:{}", system.epsg);
-    if (system.epsg > 0 && system.vertical_epsg > 0)
-      lost += fmt::format("+{}", system.vertical_epsg);
-    losses.push_back(std::move(lost));
+    const std::string code = code_text(system);
+    losses.push_back(code.empty() ? "coordinate system" : "coordinate system " + code);
   }
   losses.emplace_back("header and records of LAS");
   return losses;

@@ -81,6 +81,7 @@ LasFacts las_facts(const InputFile& file) {
                  .created_year = number_at<std::uint16_t>(las.header, las_header::kCreationYear),
                  .scale = {las.scale(0), las.scale(1), las.scale(2)},
                  .offset = {las.offset(0), las.offset(1), las.offset(2)},
+                 .code = code_text(coordinate_system_of(las)),
                  .coordinate_system = coordinate_system(las),
                  .records = {},
                  .extra_bytes = {},

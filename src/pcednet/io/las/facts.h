@@ -29,6 +29,7 @@ struct LasFacts {
   std::string system, software;
   unsigned created_day = 0, created_year = 0;
   std::array<double, 3> scale = {}, offset = {};
+  std::string code;               ///< of the coordinate system, see code_text(); may be empty
   std::string coordinate_system;  ///< the WKT, or the citations of GeoTIFF keys; may be empty
   std::vector<Record> records;    ///< extended ones last
   std::vector<std::string> extra_bytes;
