@@ -145,7 +145,13 @@ test("a page that opens after the cloud was loaded tells of the cloud, too, and 
     await few.goto(address);
     await few.locator(".notice.warning", { hasText: "2 faces are not used, only their vertices" }).waitFor();
     await few.locator(".notice.warning", { hasText: "no normals in the file: estimated" }).waitFor();
-    assert.match(told, /warning: mesh\.obj: 2 faces are not used/);
+    while (!/warning: mesh\.obj: 2 faces are not used/.test(told)) await few.waitForTimeout(20);
+    // So few points are far apart: a hundred spacings away the cloud would be a speck.
+    await few.locator("canvas").first().focus();
+    await few.keyboard.press("n");
+    await few.waitForFunction(() => annotator.store.now.uncertain !== null);
+    const away = await few.evaluate(() => annotator.stage.camera.pose.distance);
+    assert.ok(away <= (1.5 * Math.SQRT2) / 2 + 1e-9, `${away} from a square of 1`);
   } finally {
     await few.close();
     const ended = once(program, "exit");
@@ -153,6 +159,18 @@ test("a page that opens after the cloud was loaded tells of the cloud, too, and 
     await ended;
   }
 });
+
+test("says that it fetches the points until there are some", () =>
+  withThree(["--project", path.join(folder, "fetching.json")], async (few, address) => {
+    let release;
+    const released = new Promise((done) => (release = done));
+    await few.route("**/api/node/0/points*", (route) => released.then(() => route.continue()));
+    await few.goto(address);
+    await few.getByText("Fetching the points").waitFor();
+    release();
+    await few.getByText("Fetching the points").waitFor({ state: "hidden" });
+    await few.waitForFunction(() => annotator.stage.chunks.length === 1);
+  }));
 
 test("shows a prediction that comes while the page opens", () =>
   withThree(["--model", "none", "--project", path.join(folder, "opening.json")], async (few, address) => {

@@ -51,6 +51,33 @@ test("shows at once what the model finds, boundary too", async () => {
   if (process.env.SCREENSHOT_START) await page.screenshot({ path: process.env.SCREENSHOT_START });
 });
 
+test("cuts no number beside the curve of the loss", async () => {
+  const { written, cut } = await page.evaluate(async () => {
+    const written = [];
+    const cut = [];
+    const canvas = CanvasRenderingContext2D.prototype;
+    const { fillText } = canvas;
+    canvas.fillText = function (text, x, y, ...more) {
+      const width = this.measureText(text).width;
+      const left = this.getTransform().transformPoint({ x, y }).x;
+      written.push(text);
+      if (left - (this.textAlign === "right" ? width : 0) < 0) cut.push(text);
+      fillText.call(this, text, x, y, ...more);
+    };
+    const training = { run: 1, active: false, epochs: 3, epoch: [1, 2, 3], loss: [0.171551, 0.17153, 0.17149] };
+    annotator.store.set({ training });
+    while (!written.includes("3")) await new Promise((done) => setTimeout(done, 20));
+    canvas.fillText = fillText;
+    annotator.store.set({ training: null });
+    return { written, cut };
+  });
+  assert.ok(
+    written.some((text) => /^0\.171\d+$/.test(text)),
+    `${written}`,
+  );
+  assert.deepEqual(cut, []);
+});
+
 test("darkens what lies behind with eye-dome lighting, and nothing else", async () => {
   /** The first pixel, which is background, and the mean brightness of all others of another colour. */
   const look = () =>

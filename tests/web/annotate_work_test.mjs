@@ -48,7 +48,7 @@ function review({ lines = [line(), line(), line()], ask = async () => true } = {
   const server = byHand();
   const telling = { say() {}, warn: (text) => warnings.push(text) };
   const client = new line_client.LineClient(server, page, telling, () => true, ask);
-  const stage = { camera: { visit() {} } };
+  const stage = { camera: { visit() {}, nearby: (distance) => distance } };
   const its = new reviewer.Reviewer(stage, page, client);
   const decisions = () => page.now.lines.lines.map(({ decision }) => decision[0]).join("");
   return { page, client, its, warnings, asked: server.asked, decisions };

@@ -143,6 +143,11 @@ export class Camera {
     this.fly(to, plane.addScaledVector(back, Math.min(depth, away - this.radius * 1e-3)), above, from === "first");
   }
 
+  /** How far from a place to look at it: not so far that the whole cloud is small. */
+  nearby(distance: number): number {
+    return Math.min(distance, 1.5 * this.radius);
+  }
+
   /** To a place on the surface, from outside along its normal. */
   visit(place: Vec3, normal: Vec3, distance: number): void {
     const target = new Vector3(...place);

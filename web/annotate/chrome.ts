@@ -167,18 +167,21 @@ export function curtain(store: AppStore, client: Client): HTMLElement {
     { class: "banner", role: "alert" },
     "The browser has lost the graphics card and cannot draw. If the cloud does not come back, reload the page: all strokes are kept.",
   );
-  store.watch(["progress", "writer", "connected", "restarted", "waiting"], () => {
-    const { progress, writer, connected, restarted, waiting } = store.now;
+  store.watch(["progress", "fetching", "writer", "connected", "restarted", "waiting"], () => {
+    const { progress, fetching, writer, connected, restarted, waiting } = store.now;
     const strokes = waiting === 1 ? " One stroke waits." : waiting > 1 ? ` ${waiting} strokes wait.` : "";
     lost.textContent = restarted
       ? "pcednet was started again: open the address that it printed. All strokes are kept."
       : `pcednet does not answer. Is the program still running? Start it again as before, and this page goes on.${strokes}`;
-    loading.hidden = progress === null;
+    loading.hidden = progress === null && !fetching;
     other.hidden = writer || progress !== null || !connected;
     lost.hidden = connected;
     if (progress) {
       stage.textContent = stageText(progress.stage, progress.fraction);
       bar.value = progress.fraction;
+    } else if (fetching) {
+      stage.textContent = "Fetching the points";
+      bar.removeAttribute("value");
     }
   });
   store.watch(["contextLost"], () => (dark.hidden = !store.now.contextLost));

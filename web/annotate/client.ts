@@ -255,6 +255,7 @@ export class Client {
       hasPrediction,
       ...resumed(view, store.now),
     });
+    store.set({ fetching: true });
     this.stage.open(session, hasPrediction, view?.pose);
     if (!view) for (const note of session.notes) this.words.warn(note);
     if (store.now.mode === "feature") this.stage.loader.refresh("values");

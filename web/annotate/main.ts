@@ -44,6 +44,7 @@ function open(page: HTMLElement): void {
   });
   const place = h("main", { class: "stage" }, canvas);
   const stage: Stage = new Stage(canvas, api, {
+    arrived: () => store.set({ fetching: false }),
     moved: () => {
       overlay.follow();
       pointer.hoverSoon();
@@ -88,7 +89,7 @@ function open(page: HTMLElement): void {
     const place = await client.stepUncertain(by);
     const { session } = store.now;
     if (!place || !session) return;
-    stage.camera.visit(place.position, place.normal, session.spacing * VISIT_SPACINGS);
+    stage.camera.visit(place.position, place.normal, stage.camera.nearby(session.spacing * VISIT_SPACINGS));
   };
   /** Paints the place with its own prediction and goes on. */
   const acceptUncertain = (): void => {

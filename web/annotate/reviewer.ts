@@ -67,6 +67,10 @@ export class Reviewer {
     if (number === null || !session) return;
     this.store.set({ line: number, showLines: true });
     const { middle, normal, path } = lines.lines[number];
-    this.stage.camera.visit(middle, normal, Math.max(session.spacing * 60, 1.8 * extent(path)));
+    this.stage.camera.visit(
+      middle,
+      normal,
+      Math.max(this.stage.camera.nearby(session.spacing * 60), 1.8 * extent(path)),
+    );
   }
 }

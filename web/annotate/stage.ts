@@ -15,6 +15,8 @@ const SETTLE_MS = 120;
 const REST_MS = 200;
 
 export interface StageEvents {
+  /** Points of the cloud are there, or do not come. */
+  arrived(): void;
   /** The view has changed: what lies over it must follow. */
   moved(): void;
   failed(error: Error): void;
@@ -59,6 +61,7 @@ export class Stage {
           this.awaitsFirst = false;
           this.fit("first"); // on the cloud itself, not on its box
         }
+        on.arrived();
         this.touched.add(info.id);
         this.redrawSoon();
         this.schedule();
@@ -69,7 +72,10 @@ export class Stage {
         if (layer === "labels" || this.look.hidden.size > 0) this.redraw();
         else this.recolour();
       },
-      failed: (error) => on.failed(error),
+      failed: (error) => {
+        on.arrived();
+        on.failed(error);
+      },
       isPainting: () => on.isPainting(),
     });
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);

@@ -27,6 +27,8 @@ export interface State {
   /** The number of the cloud that is looked at. */
   cloud: number;
   progress: { stage: string; fraction: number } | null;
+  /** Nothing of the cloud is here yet. */
+  fetching: boolean;
   connected: boolean;
   /** Another start of the program answers, which does not know this page. */
   restarted: boolean;
@@ -87,6 +89,7 @@ export const initialState: State = {
   clouds: [],
   cloud: 0,
   progress: { stage: "Connecting", fraction: 0 },
+  fetching: false,
   connected: true,
   restarted: false,
   contextLost: false,

@@ -80,8 +80,18 @@ function drawErrors(lines: Line[]): uPlot.Plugin {
 const compact = (v: number): string =>
   Math.abs(v) >= 1e6 ? `${v / 1e6}M` : Math.abs(v) >= 1e4 ? `${v / 1e3}k` : String(Number(v.toPrecision(6)));
 
+/** A digit of an axis in pixels, at most, and what is between the numbers and the plot. */
+const DIGIT = 7,
+  GAP = 9;
+
+/** The room beside the plot: no number is cut. */
+const besidePlot =
+  (least: number): uPlot.Axis.Size =>
+  (_, values) =>
+    Math.max(least, GAP + DIGIT * Math.max(0, ...(values ?? []).map((value) => value.length)));
+
 /** A label of no letters takes no room. */
-function axis(label: string, size: number): uPlot.Axis {
+function axis(label: string, size: uPlot.Axis.Size): uPlot.Axis {
   return {
     label: label || undefined,
     labelSize: label ? 20 : 0,
@@ -104,7 +114,7 @@ function options(plot: LinePlot, width: number): uPlot.Options {
   } else if (plot.x.every(Number.isInteger)) {
     xAxis.incrs = WHOLE;
   }
-  const yAxis = axis(plot.yLabel, plot.yLabel ? 46 : 30);
+  const yAxis = axis(plot.yLabel, besidePlot(plot.yLabel ? 46 : 30));
   if (plot.scores) yAxis.values = (_, splits) => splits.map((v) => (v === null ? "" : score(v)));
   return {
     width,
