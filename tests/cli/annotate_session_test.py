@@ -9,7 +9,7 @@ import unittest
 import numpy as np
 
 from annotate_support import AnnotateTest, Drip, EDGE, FACE, POINTS, Server, brush
-from support import read_ply, run, write_ply
+from support import read_ply, run, sheet, write_ply
 
 
 class AnnotateSession(AnnotateTest):
@@ -291,7 +291,8 @@ class AnnotateSession(AnnotateTest):
             server.post("/api/save", {"what": "lines", "name": name}, expect=expect)
         drawn = json.loads((self.folder / "cube_lines.geojson").read_text())["features"]
         self.assertEqual(len(drawn), len(decisions) - 2)
-        for format in ("dxf", "geojson"):
+        server.post("/api/save", {"what": "lines", "name": "cube_lines.gpkg"})
+        for format in ("dxf", "geojson", "gpkg"):
             status, headers, data = server.request(f"/api/download/lines?format={format}")
             self.assertEqual((status, headers["Content-Disposition"]),
                              (200, f'attachment; filename="cube_lines.{format}"'))
@@ -309,6 +310,19 @@ class AnnotateSession(AnnotateTest):
         server.post("/api/lines/find")
         server.post("/api/cancel")
         self.assertFalse(server.get("/api/lines")["searching"])
+
+    def test_finds_boundaries_if_they_are_asked_for(self):
+        self.cloud = self.folder / "sheet.ply"
+        write_ply(self.cloud, *sheet()[:2])
+        server = self.serve("--model", "general")
+        server.open()
+        server.until("/api/session", lambda s: s["prediction_version"] > 0 and s["run"])
+        self.assertEqual(self.find_lines(server, 1)["lines"], [])
+        server.post("/api/lines/find", {"boundaries": "rim"}, expect=400)
+        server.post("/api/lines/find", {"boundaries": True})
+        found = server.until("/api/lines", lambda l: l["version"] == 2 and not l["searching"])["lines"]
+        self.assertEqual({line["class"] for line in found}, {3})
+        self.assertAlmostEqual(sum(line["length"] for line in found), 4, delta=0.2)
 
     def test_tells_whether_strokes_are_newer_than_the_run(self):
         server = self.quiet()

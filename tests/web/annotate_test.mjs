@@ -559,12 +559,12 @@ test("finds lines, goes through them, and downloads those that are accepted", as
   });
   await page.getByRole("button", { name: "Accept the rest" }).click();
   await panel.getByText(`${found.length} lines: ${found.length - 1} accepted, 1 rejected.`).waitFor();
-  const download = async (name) => {
+  const download = async (name, extension = name.toLowerCase()) => {
     const [offer] = await Promise.all([
       page.waitForEvent("download"),
       page.getByRole("button", { name, exact: true }).click(),
     ]);
-    assert.equal(offer.suggestedFilename(), `roof_lines.${name.toLowerCase()}`);
+    assert.equal(offer.suggestedFilename(), `roof_lines.${extension}`);
     return fs.readFileSync(await offer.path(), "utf8");
   };
   const { features } = JSON.parse(await download("GeoJSON"));
@@ -577,6 +577,7 @@ test("finds lines, goes through them, and downloads those that are accepted", as
   );
   features.forEach(({ properties }, i) => assert.ok(Math.abs(properties.length - accepted[i].length) < 1e-9));
   assert.match(await download("DXF"), /LINE\r?\n/);
+  assert.match(await download("GeoPackage", "gpkg"), /^SQLite format 3/);
   const drawnLines = (await download("OBJ")).split("\n").filter((line) => line.startsWith("l "));
   assert.equal(drawnLines.length, accepted.length);
 

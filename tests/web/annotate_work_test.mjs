@@ -111,7 +111,10 @@ test("a search that would forget decisions asks first", async () => {
   assert.equal(some.asked.length, 0);
   says = true;
   await some.client.find();
-  assert.deepEqual([some.asked[0].path, some.asked[0].body], ["/api/lines/find", { cloud: 0 }]);
+  assert.deepEqual([some.asked[0].path, some.asked[0].body], ["/api/lines/find", { cloud: 0, boundaries: false }]);
+  some.page.set({ boundaries: true });
+  await some.client.find();
+  assert.deepEqual(some.asked[1].body, { cloud: 0, boundaries: true });
 });
 
 test("lines of another cloud do not touch those in view", async () => {

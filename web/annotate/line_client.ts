@@ -61,7 +61,8 @@ export class LineClient {
     if (version === this.known.version) return;
     await this.refresh();
     if (this.store.now.cloud !== cloud || this.known.lines.length > 0) return;
-    this.words.warn("No lines found: the prediction has no edge that is long enough.");
+    const more = this.store.now.boundaries ? "" : " Boundaries were not searched.";
+    this.words.warn(`No lines found: the prediction has no edge that is long enough.${more}`);
   }
 
   takeStage(stage: string, fraction: number): void {
@@ -76,10 +77,10 @@ export class LineClient {
   /** Finds the lines of the cloud in view; asks first if that costs decisions. */
   async find(): Promise<void> {
     if (!this.mayPaint()) return;
-    const { cloud } = this.store.now;
+    const { cloud, boundaries } = this.store.now;
     const loss = lossOf(this.store.now);
     if (loss && !(await this.ask(loss, "Find again"))) return;
-    this.api.post("/api/lines/find", { cloud }).catch((error: Error) => this.words.warn(error.message));
+    this.api.post("/api/lines/find", { cloud, boundaries }).catch((error: Error) => this.words.warn(error.message));
   }
 
   /** Decides at once, before the server has heard of it; false if this window may not. */

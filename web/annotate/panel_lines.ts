@@ -1,6 +1,6 @@
 // The lines found in the prediction: a search, a walk through them, what becomes of each.
 
-import { CLASS_PALETTES } from "../shared/colours";
+import { BOUNDARY, CLASS_PALETTES } from "../shared/colours";
 import { h } from "../shared/dom";
 import type { Press } from "./chrome";
 import { refusalOf, type Client } from "./client";
@@ -14,6 +14,7 @@ const FORMATS: [string, string][] = [
   ["dxf", "DXF"],
   ["obj", "OBJ"],
   ["geojson", "GeoJSON"],
+  ["gpkg", "GeoPackage"],
 ];
 
 const plural = (n: number, noun: string): string => `${count(n)} ${noun}${n === 1 ? "" : "s"}`;
@@ -39,7 +40,9 @@ function facts(line: Line): [string, string][] {
     ["kind", `${line.kind}, ${CLASS_PALETTES.paper[line.class].name}`],
     ["length", length(line.length)],
     ["confidence", percent(line.confidence)],
-    ["angle", `${line.angle.toFixed(0)}° between the surfaces`],
+    ...(line.class === BOUNDARY
+      ? []
+      : ([["angle", `${line.angle.toFixed(0)}° between the surfaces`]] as [string, string][])),
     ["points", count(line.points)],
     ["decision", line.decision],
   ];
@@ -48,6 +51,7 @@ function facts(line: Line): [string, string][] {
 export function linesPanel(store: AppStore, client: Client, reviewer: Reviewer, press: Press): HTMLElement {
   const words = h("p", { class: "summary", role: "status" });
   const find = button("Find lines", () => void client.lines.find());
+  const boundaries = checkbox("Boundaries, too", "", (on) => store.set({ boundaries: on }));
   const cancel = button("Cancel", () => client.cancel());
   const show = checkbox("Show lines", "H", (on) => store.set({ showLines: on }));
   const title = h("h3", {});
@@ -85,6 +89,7 @@ export function linesPanel(store: AppStore, client: Client, reviewer: Reviewer, 
     if (lines.searching) showOnly(cancel, find);
     else showOnly(find, cancel);
     find.hidden ||= !edges;
+    boundaries.element.hidden = !edges;
     allow(find, mayDecide && runs.length > 0);
     review.hidden = lines.lines.length === 0;
     allow(rest, mayDecide && open > 0);
@@ -100,5 +105,5 @@ export function linesPanel(store: AppStore, client: Client, reviewer: Reviewer, 
     );
     for (const each of [accept, reject]) allow(each, refusalOf(store.now) === "" && chosen !== undefined);
   });
-  return section("Lines", true, words, h("div", { class: "buttons" }, find, cancel), review);
+  return section("Lines", true, words, h("div", { class: "buttons" }, find, cancel), boundaries.element, review);
 }

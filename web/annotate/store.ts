@@ -77,6 +77,8 @@ export interface State {
   /** Strokes that the prediction does not know yet. */
   outOfDate: boolean;
   lines: Lines;
+  /** The next search is for boundaries, too. */
+  boundaries: boolean;
   /** The number of the line that is looked at. */
   line: number | null;
   showLines: boolean;
@@ -126,6 +128,7 @@ export const initialState: State = {
   uncertain: null,
   predictionVersion: 0,
   outOfDate: false,
+  boundaries: false,
   lines: { version: 0, prediction_version: 0, searching: false, cloud: 0, lines: [] },
   line: null,
   showLines: true,

@@ -42,6 +42,9 @@ std::string event_json(const Event& event);
 /// Reads a stroke. Throws Error(kUsage), naming the fault.
 Stroke parse_stroke(std::string_view json);
 
+/// Whether a search for lines is for boundaries, too. Throws Error(kUsage) unless it is a boolean.
+bool parse_boundaries(std::string_view json);
+
 /// Throws Error(kUsage), naming the fault.
 LinesDecided parse_decision(std::string_view json);
 

@@ -61,6 +61,14 @@ std::string to_json(const LinesView& view) {
   return to_text(json);
 }
 
+bool parse_boundaries(std::string_view text) {
+  try {
+    return parse_json(text).value("boundaries", false);
+  } catch (const Json::exception& error) {
+    throw Error(ErrorKind::kUsage, fmt::format("boundaries: {}", error.what()));
+  }
+}
+
 LinesDecided parse_decision(std::string_view text) {
   try {
     const Json json = parse_json(text);

@@ -214,7 +214,8 @@ Response change_classes(const Call& call) {
 }
 
 Response find_lines(const Call& call) {
-  call.session.find_lines(parse_cloud(call.request.body));
+  const std::string& body = call.request.body;
+  call.session.find_lines(parse_cloud(body), parse_boundaries(body));
   return json_response("{}");
 }
 

@@ -80,8 +80,9 @@ class Session {
   void restore(int run);
 
   LinesView lines(std::size_t cloud = 0) const;
-  /// Finds the lines in the present prediction of a cloud, on the session's thread.
-  void find_lines(std::size_t cloud = 0);
+  /// Finds the lines in the present prediction of a cloud, on the session's thread; with boundaries
+  /// also those where the surface ends.
+  void find_lines(std::size_t cloud = 0, bool boundaries = false);
   /// Throws as annotate::decide() and keep_decisions() do, and decides nothing then.
   void decide(const LinesDecided& wanted);
 

@@ -5,7 +5,6 @@
 #include <exception>
 #include <map>
 #include <mutex>
-#include <set>
 #include <thread>
 
 #include "workbench/annotate/painting.h"
@@ -25,10 +24,11 @@ struct Loading {
 /// The orders for the worker. Work begun under an older generation is void.
 struct Orders {
   std::optional<std::chrono::steady_clock::time_point> train_at = {};
-  bool asked_for = false;                 ///< by the user: failure is an error
-  std::set<std::size_t> find_lines = {};  ///< in these clouds, when nothing else is to be done
-  bool judge = false;                     ///< the shown run, after everything else
-  std::optional<int> restore = {};        ///< a run
+  bool asked_for = false;  ///< by the user: failure is an error
+  /// In these clouds, when nothing else is to be done, and whether with boundaries.
+  std::map<std::size_t, bool> find_lines = {};
+  bool judge = false;               ///< the shown run, after everything else
+  std::optional<int> restore = {};  ///< a run
   std::uint64_t generation = 0;
   bool stopping = false;
 };
@@ -80,7 +80,7 @@ struct Session::State {
   void open_project();
   void train_once(std::uint64_t mine);
   void restore_once(int number, std::uint64_t mine);
-  void find_lines_once(std::size_t cloud, std::uint64_t mine);
+  void find_lines_once(std::size_t cloud, bool boundaries, std::uint64_t mine);
   void judge_once(std::uint64_t mine);
   bool train(Run& run, std::span<const std::uint8_t> painted_classes, std::uint64_t mine);
   bool train_again(Run& run, std::uint64_t mine);

@@ -179,7 +179,7 @@ LinesView Session::lines(std::size_t cloud) const {
   return {state_->reviews[cloud], cloud, state_->scenes[cloud]};
 }
 
-void Session::find_lines(std::size_t cloud) {
+void Session::find_lines(std::size_t cloud, bool boundaries) {
   const Lock lock(state_->mutex);
   State& s = *state_;
   s.check_cloud(cloud);
@@ -190,7 +190,7 @@ void Session::find_lines(std::size_t cloud) {
     throw Error(ErrorKind::kInsufficient,
                 "lines are of edges, which this project's classes are not");
   }
-  s.orders.find_lines.insert(cloud);
+  s.orders.find_lines[cloud] = boundaries;
   s.set_searching(cloud, true);
   s.changed.notify_all();
 }
@@ -212,7 +212,7 @@ void Session::State::set_searching(std::size_t cloud, bool on) {
   emit(LinesChanged{.cloud = cloud, .version = review.version, .is_searching = on});
 }
 
-void Session::State::find_lines_once(std::size_t cloud, std::uint64_t mine) {
+void Session::State::find_lines_once(std::size_t cloud, bool boundaries, std::uint64_t mine) {
   std::shared_ptr<const Prediction> prediction;
   int version = 0;
   {
@@ -227,14 +227,17 @@ void Session::State::find_lines_once(std::size_t cloud, std::uint64_t mine) {
     for (std::uint8_t& id : edges) {
       if (id > kBoundary && id != kUnlabelled) id = kNonEdge;
     }
+    const auto scanners =
+        boundaries ? scanner_of_points(scenes[cloud]->cloud) : std::vector<Vec3>{};
     auto curves = std::make_shared<std::vector<lines::Curve>>(
         lines::find_lines({.positions = prepared.positions,
                            .normals = prepared.normals,
                            .classes = edges,
                            .p_sharp = prediction->result.p_sharp,
                            .p_smooth = prediction->result.p_smooth,
+                           .scanners = scanners,
                            .curve = prepared.curve},
-                          {}, &reporter));
+                          {.boundaries = boundaries}, &reporter));
     const Lock lock(mutex);
     if (orders.generation != mine || orders.stopping) return;
     LineReview& review = reviews[cloud];

@@ -79,8 +79,9 @@ std::function<void()> Session::State::next_work() {
     return [this, mine] { train_once(mine); };
   }
   if (!orders.find_lines.empty()) {
-    const std::size_t cloud = orders.find_lines.extract(orders.find_lines.begin()).value();
-    return [this, mine, cloud] { find_lines_once(cloud, mine); };
+    const auto order = *orders.find_lines.begin();
+    orders.find_lines.erase(order.first);
+    return [this, mine, order] { find_lines_once(order.first, order.second, mine); };
   }
   orders.judge = false;
   return [this, mine] { judge_once(mine); };
