@@ -66,6 +66,15 @@ class Info(CliTest):
                 self.assertEqual(self.info(path)[0]["las"]["coordinate_system_code"], code)
                 self.assertIn(said, run("info", path).stdout)
 
+    def test_names_the_classes_of_las_by_the_point_format(self):
+        path = self.folder / "a.las"
+        for number, field, said in [(1, "classification", "6 building: 2, 8 model key point: 1, 12 overlap: 1, 14: 2\n"),
+                                    (6, "Classification", "6 building: 2, 8: 1, 12: 1, 14 conductor wire: 2\n")]:
+            rows = random_rows(FORMATS[number], 6)
+            rows[field] = [6, 6, 8, 12, 14, 14]
+            path.write_bytes(las(number, rows))
+            self.assertIn("by class       " + said, run("info", path).stdout)
+
     def test_outliers_are_counted(self):
         """As by brute force: fewer than three others within ten spacings; cells hold many points or few."""
         p, n, _ = cube(1500)
