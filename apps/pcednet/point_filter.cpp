@@ -22,10 +22,12 @@ const std::vector<std::string>& flag_names() {
   return names;
 }
 
-/// The field of that name, in any case.
+/// The field of that name, in any case, also as CloudCompare calls it (scalar_Classification).
 const Attribute& field_of(const PointCloud& cloud, const std::string& name) {
+  const std::string wanted = io::lower_case(name);
   const auto found = std::ranges::find_if(cloud.attributes, [&](const Attribute& attribute) {
-    return attribute.components == 1 && io::lower_case(attribute.name) == io::lower_case(name);
+    const std::string its = io::lower_case(attribute.name);
+    return attribute.components == 1 && (its == wanted || its == "scalar_" + wanted);
   });
   if (found != cloud.attributes.end()) return *found;
   throw Error(ErrorKind::kInsufficient, fmt::format("has no field {} to choose points by", name));

@@ -4,7 +4,7 @@ import unittest
 import numpy as np
 
 from las_test import FORMATS, las, points_of, random_rows, records_of, vlr
-from support import CliTest, read_ply, run
+from support import CliTest, read_ply, run, write_ply
 
 PART = 1 << 19  # points that convert reads at a time
 
@@ -59,6 +59,13 @@ class Filter(CliTest):
         self.assertEqual(len(text.read_text().splitlines()) - 1, ((codes == 6) & ~withheld).sum())
         spaced, _ = read_ply(self.converted(source, "--keep-class", "2", "--subsample", "0.5", name="c.ply"))
         self.assertEqual(set(spaced["Classification"]), {2})
+
+    def test_takes_the_fields_as_cloudcompare_calls_them(self):
+        p = np.random.default_rng(1).uniform(0, 1, (100, 3))
+        codes = np.arange(100) % 3
+        write_ply(self.folder / "cc.ply", p, scalar_Classification=codes.astype("<f4"))
+        kept, _ = read_ply(self.converted(self.folder / "cc.ply", "--keep-class", "2", name="a.ply"))
+        np.testing.assert_array_equal(kept["scalar_Classification"], codes[codes == 2])
 
     def test_reads_large_files_in_parts_of_which_the_first_may_be_left_out(self):
         rows, _ = self.survey(PART + 5000)
