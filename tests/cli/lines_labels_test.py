@@ -26,6 +26,11 @@ class LinesLabels(LinesTest):
             self.assertEqual(self.stated_count(done), 12)
             if cloud == coded:
                 self.assertEqual(self.made["obj"].read_bytes(), (self.folder / "plain.obj").read_bytes())
+        of_cloudcompare = self.folder / "scalar.csv"
+        of_cloudcompare.write_text(coded.read_text().replace(",Classification", ",scalar_Classification", 1))
+        done = run("lines", of_cloudcompare, *self.outputs("obj"), "--las-classification", "2=64,1=65,0=6", "--overwrite")
+        self.assertIn("labels from its field Classification", done.stderr)
+        self.assertEqual(self.made["obj"].read_bytes(), (self.folder / "plain.obj").read_bytes())
         in_tiles = run("lines", las_file, *self.outputs("obj"), "--las-classification", "2=64,1=65,0=6", "--overwrite",
                        "--max-memory", "90M")
         self.assertEqual(self.stated_count(in_tiles), 12)

@@ -160,9 +160,12 @@ bool sounds_like_labels(const std::string& name) {
          !has("edge_class") && !has("edgeofflight");
 }
 
+/// The field of LAS, also as CloudCompare calls it.
 const Attribute* find_classification(const PointCloud& cloud) {
   const auto found = std::ranges::find_if(cloud.attributes, [](const Attribute& attribute) {
-    return attribute.components == 1 && io::lower_case(attribute.name) == "classification";
+    const std::string name = io::lower_case(attribute.name);
+    return attribute.components == 1 &&
+           (name == "classification" || name == "scalar_classification");
   });
   return found == cloud.attributes.end() ? nullptr : &*found;
 }
