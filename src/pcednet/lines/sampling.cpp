@@ -26,7 +26,7 @@ constexpr double kMostNoise = 0.7;         ///< in spacings: more is no surface
 constexpr double kLeastGapOfSheets = 0.5;  ///< between the two sides of a wall, of their heights
 constexpr double kLeastStep = 0.05;        ///< of rounded coordinates, in spacings
 constexpr std::size_t kOnOwnSide = 3;      ///< nearest others, hardly ever beyond a wall
-constexpr double kLikeNormals = 0.9;       ///< mean cosine where the surface is flat
+constexpr double kLikeNormals = 0.75;      ///< mean cosine where the surface is flat
 constexpr double kLayered = 2.1;           ///< least noise of several layers, by that of one
 constexpr double kLeastOfLayers = 0.15, kMostOfLayers = 0.6;  ///< in spacings
 constexpr double kMostOpposed = 0.15;                         ///< of these, where signs agree
