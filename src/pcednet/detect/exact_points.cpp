@@ -1,5 +1,6 @@
 #include "pcednet/detect/exact_points.h"
 
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <vector>
 

@@ -1,5 +1,6 @@
 #include "pcednet/lines/sampling.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
