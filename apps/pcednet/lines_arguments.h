@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "labelled_files.h"
+#include "las_codes.h"
 #include "models.h"
 #include "pcednet/detect/prepare.h"
 #include "pcednet/io/coordinate_system.h"

@@ -10,7 +10,7 @@
 #include "classify_cloud.h"
 #include "commands.h"
 #include "common.h"
-#include "labelled_files.h"
+#include "las_codes.h"
 #include "methods.h"
 #include "models.h"
 #include "pcednet/core/error.h"
