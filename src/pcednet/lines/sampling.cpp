@@ -131,23 +131,15 @@ std::vector<PlaneSample> samples_at(const OrderedPoints& cloud,
   return samples;
 }
 
-/// The points with about the normal of all others near them: not those of rods and thin walls.
-std::vector<std::uint32_t> flat_of(const OrderedPoints& cloud,
-                                   const std::vector<std::uint32_t>& points) {
-  const std::size_t others = cloud.available(kMoreNeighbours);
-  std::vector<spatial::Neighbour> nearest;
-  cloud.nearest_others(points, others, nearest);
-  std::vector<std::uint32_t> flat;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    double cosines = 0.0;
-    for (const auto& near : std::span(nearest).subspan(k * others, others)) {
-      cosines += cloud.face_away(points[k], near.index)
-                     ? 0.0
-                     : std::abs(cloud.normal(points[k]).dot(cloud.normal(near.index)));
-    }
-    if (cosines > kLikeNormals * static_cast<double>(others)) flat.push_back(points[k]);
+/// Whether a point has about the normal of these: not on rods and thin walls.
+bool has_like_normal(const OrderedPoints& cloud, std::uint32_t point,
+                     std::span<const spatial::Neighbour> others) {
+  double cosines = 0.0;
+  for (const spatial::Neighbour& near : others) {
+    if (cloud.face_away(point, near.index)) continue;
+    cosines += std::abs(cloud.normal(point).dot(cloud.normal(near.index)));
   }
-  return flat;
+  return cosines > kLikeNormals * static_cast<double>(others.size());
 }
 
 /// The root mean square distance of places from a paraboloid of least squares; `normal` is across.
@@ -165,34 +157,35 @@ double bent_residual(const std::vector<Vec3>& places, const Vec3& normal) {
   return (heights - fitted).norm() / std::sqrt(static_cast<double>(places.size()));
 }
 
-/// The noise of neighbours about a bent surface, whatever layer they are of.
-double bent_noise(const OrderedPoints& cloud, const std::vector<std::uint32_t>& points) {
-  const std::size_t others = cloud.available(kMoreNeighbours);
+/// Of the points with like normals, the noise about a bent surface, whatever layer others are of.
+std::vector<PlaneSample> bent_samples_at(const OrderedPoints& cloud,
+                                         const std::vector<std::uint32_t>& points) {
   std::vector<spatial::Neighbour> nearest;
-  cloud.nearest_others(points, others, nearest);
+  cloud.nearest_others(points, kMoreNeighbours, nearest);
   std::vector<PlaneSample> samples;
-  std::vector<Vec3> offsets(others);
+  std::vector<Vec3> offsets(kMoreNeighbours);
   for (std::size_t k = 0; k < points.size(); ++k) {
-    const auto row = std::span(nearest).subspan(k * others, others);
+    const auto row = std::span(nearest).subspan(k * kMoreNeighbours, kMoreNeighbours);
     const double spacing = spacing_of(row);
-    if (!(spacing > 0.0)) continue;
-    std::transform(row.begin(), row.end(), offsets.begin(), [&](const auto& near) {
-      return Vec3(cloud.position(near.index) - cloud.position(points[k]));
-    });
+    if (!(spacing > 0.0) || !has_like_normal(cloud, points[k], row)) continue;
     PlaneSums sums;
-    for (const Vec3& offset : offsets) sums.add(offset);
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      offsets[i] = cloud.position(row[i].index) - cloud.position(points[k]);
+      sums.add(offsets[i]);
+    }
     samples.push_back({spacing, bent_residual(offsets, fit_plane(sums).normal), 0});
   }
-  return noise_of(samples);
+  return samples;
 }
 
 /// The noise of a cloud of several layers about a spacing apart, as of scans that are not aligned;
 /// of others, this one, which is that of the points' own layers.
 double noise_of_layers(const OrderedPoints& cloud, const std::vector<std::uint32_t>& points,
                        double noise) {
-  const std::vector<std::uint32_t> flat = flat_of(cloud, points);
-  if (flat.size() < kFewSamples || cloud.available(kMoreNeighbours) < kMoreNeighbours) return noise;
-  const double of_all = bent_noise(cloud, flat);
+  if (cloud.available(kMoreNeighbours) < kMoreNeighbours) return noise;
+  const std::vector<PlaneSample> samples = bent_samples_at(cloud, points);
+  if (samples.size() < kFewSamples) return noise;
+  const double of_all = noise_of(samples);
   const bool layered = of_all > kLeastOfLayers && of_all > kLayered * noise;
   return layered ? std::min(of_all, kMostOfLayers) : noise;
 }
