@@ -49,12 +49,8 @@ PointCloud read_cloud(const std::filesystem::path& file, const Progress* progres
   auto loaded = read_whole(file);
   detect::mark_estimates(loaded.cloud, progress);
   warn_all(file, loaded.warnings);
-  if (const std::size_t faces = io::face_count(loaded.cloud)) {
-    warn(
-        fmt::format("{}: {} faces are not used, only their vertices: pcednet convert --sample N "
-                    "samples points on faces",
-                    file.string(), faces));
-  }
+  const std::string note = io::note_on_faces(loaded.cloud);
+  if (!note.empty()) warn(fmt::format("{}: {}", file.string(), note));
   return std::move(loaded.cloud);
 }
 

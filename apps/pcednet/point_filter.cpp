@@ -9,6 +9,7 @@
 #include "number_options.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/prepare.h"
+#include "pcednet/io/promote.h"
 #include "pcednet/io/text_scan.h"
 #include "workbench/shapes/perturb.h"
 
@@ -22,14 +23,8 @@ const std::vector<std::string>& flag_names() {
   return names;
 }
 
-/// The field of that name, in any case, also as CloudCompare calls it (scalar_Classification).
 const Attribute& field_of(const PointCloud& cloud, const std::string& name) {
-  const std::string wanted = io::lower_case(name);
-  const auto found = std::ranges::find_if(cloud.attributes, [&](const Attribute& attribute) {
-    const std::string its = io::lower_case(attribute.name);
-    return attribute.components == 1 && (its == wanted || its == "scalar_" + wanted);
-  });
-  if (found != cloud.attributes.end()) return *found;
+  if (const Attribute* field = io::find_called(cloud, io::lower_case(name))) return *field;
   throw Error(ErrorKind::kInsufficient, fmt::format("has no field {} to choose points by", name));
 }
 

@@ -5,6 +5,8 @@
 #include "io/scratch.h"
 #include "pcednet/core/error.h"
 #include "support/expect_error.h"
+#include "workbench/truth/abc_features.h"
+#include "workbench/truth/colour_labels.h"
 
 namespace pcednet::truth {
 namespace {

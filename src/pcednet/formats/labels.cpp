@@ -87,8 +87,7 @@ std::vector<std::uint8_t> read_cloud_labels(const std::filesystem::path& path) {
 /// unlabelled.
 const Attribute* column_of_classes(const PointCloud& cloud, const std::string& name) {
   for (const Attribute& attribute : cloud.attributes) {
-    const std::string its = io::lower_case(attribute.name);
-    if (attribute.components != 1 || (its != name && its != "scalar_" + name)) continue;
+    if (!io::is_called(attribute, name)) continue;
     bool fits = true;
     for (std::size_t i = 0; i < cloud.size() && fits; ++i) {
       const auto label = io::to_label(attribute.value(i));

@@ -95,6 +95,15 @@ std::size_t face_count(const PointCloud& cloud) {
   return 0;
 }
 
+std::string note_on_faces(const PointCloud& cloud) {
+  const std::size_t faces = face_count(cloud);
+  if (faces == 0) return "";
+  return fmt::format(
+      "{} faces are not used, only their vertices: pcednet convert --sample N samples points on "
+      "faces",
+      faces);
+}
+
 std::vector<Triangle> triangles_of(const PointCloud& cloud) {
   std::vector<Triangle> triangles;
   std::vector<double> corners;

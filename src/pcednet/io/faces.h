@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "pcednet/cloud/point_cloud.h"
@@ -22,6 +23,10 @@ ForeignElement make_edge_element(const std::vector<std::uint32_t>& ends);
 
 /// The number of faces that the element `face` of the cloud declares; 0 if there is none.
 std::size_t face_count(const PointCloud& cloud);
+
+/// For the user, where the vertices are taken for the points, which they seldom are meant to be;
+/// empty if there are no faces.
+std::string note_on_faces(const PointCloud& cloud);
 
 /// The faces of the mesh whose vertices `cloud` holds, from its foreign element `face`: its list
 /// vertex_indices or vertex_index, polygons cut into triangles from their first corner. Empty if

@@ -142,6 +142,17 @@ const std::vector<std::vector<std::string>>& colour_names() {
   return names;
 }
 
+bool is_called(const Attribute& attribute, const std::string& name) {
+  const std::string its = lower_case(attribute.name);
+  return attribute.components == 1 && (its == name || its == "scalar_" + name);
+}
+
+const Attribute* find_called(const PointCloud& cloud, const std::string& name) {
+  const auto found = std::ranges::find_if(
+      cloud.attributes, [&](const Attribute& attribute) { return is_called(attribute, name); });
+  return found == cloud.attributes.end() ? nullptr : &*found;
+}
+
 std::optional<std::uint8_t> to_label(double value) {
   if (std::isnan(value) || value == -1.0) return kUnlabelled;
   if (!(value >= 0.0 && value <= 255.0 && value == std::floor(value))) return std::nullopt;

@@ -16,6 +16,13 @@ namespace pcednet::io {
 const std::vector<std::string>& label_names();
 const std::vector<std::vector<std::string>>& colour_names();
 
+/// Whether the attribute holds one number a point and is called `name` (in lower case) or, as in
+/// CloudCompare, scalar_`name`, in any case.
+bool is_called(const Attribute& attribute, const std::string& name);
+
+/// The first attribute that is; nullptr if there is none.
+const Attribute* find_called(const PointCloud& cloud, const std::string& name);
+
 /// The label that a number of any type denotes: itself if it is whole and in 0 ... 255, kUnlabelled
 /// if it is -1 or NaN, otherwise none.
 std::optional<std::uint8_t> to_label(double value);

@@ -23,16 +23,6 @@ namespace {
 /// With a ratio, a range begins at the mean of the middle half of the spacings.
 constexpr double kAnyRatio = 10.0;
 
-/// Vertices of a mesh are seldom the cloud that was meant.
-void add_note_on_faces(Scene& scene) {
-  const std::size_t faces = io::face_count(scene.cloud);
-  if (faces == 0) return;
-  scene.warnings.push_back(
-      fmt::format("{} faces are not used, only their vertices: pcednet convert --sample N samples "
-                  "points on faces",
-                  faces));
-}
-
 /// Of coordinates that are rounded to more than the spacing.
 void add_note_on_float(Scene& scene) {
   if (!detect::may_be_too_coarse(scene.cloud.position_type, scene.prepared.decision, {})) return;
@@ -60,7 +50,9 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
   stage.advance();
   scene->cloud = std::move(loaded.cloud);
   scene->warnings = std::move(loaded.warnings);
-  add_note_on_faces(*scene);
+  if (const auto note = io::note_on_faces(scene->cloud); !note.empty()) {
+    scene->warnings.push_back(note);
+  }
   scene->input = {as_utf8(input.filename().string()), digest_of_file(input), scene->cloud.size()};
   with_name_in_errors(input.string(),
                       [&] { scene->prepared = detect::prepare(scene->cloud, {}, progress); });
