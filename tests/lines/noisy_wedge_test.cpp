@@ -12,13 +12,13 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr double kNoise = 0.5;
+constexpr double kNoise = 0.5, kLittleNoise = 0.05;
 constexpr std::size_t kPoints = 72;
 
 /// One point per unit of area over the disc that holds `kPoints`, at the height of a surface, with
 /// noise in all directions; nearest first.
 template <typename Height>
-NearPoints noisy_points(std::uint64_t seed, const Height& height) {
+NearPoints noisy_points(std::uint64_t seed, const Height& height, double noise = kNoise) {
   Random random(seed);
   const double reach = std::sqrt(static_cast<double>(kPoints) / std::numbers::pi);
   std::vector<Vec3> places;
@@ -27,7 +27,7 @@ NearPoints noisy_points(std::uint64_t seed, const Height& height) {
     const double v = reach * (2.0 * random.uniform() - 1.0);
     if (u * u + v * v > reach * reach) continue;
     places.push_back(Vec3(u, v, height(u)) +
-                     kNoise * Vec3{random.normal(), random.normal(), random.normal()});
+                     noise * Vec3{random.normal(), random.normal(), random.normal()});
   }
   std::sort(places.begin(), places.end(),
             [](const Vec3& a, const Vec3& b) { return a.squaredNorm() < b.squaredNorm(); });
@@ -73,6 +73,28 @@ TEST(NoisyWedge, FindsFewOnACylinder) {
     found += fit_half_planes(points, kPoints, kNoise).has_value();
   }
   EXPECT_LE(found, 15);
+}
+
+/// Half-planes that fall by as much as they go away from the line x = z = 0.
+const Wedge kRightAngle = {Vec3::Zero(), Vec3::UnitY(), Vec3(1, 0, -1).normalized(),
+                           Vec3(-1, 0, -1).normalized()};
+
+TEST(NoisyWedge, IsNoSmoothSurface) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const auto points = noisy_points(
+        seed, [](double u) { return -std::abs(u); }, kLittleNoise);
+    EXPECT_FALSE(is_smooth(points, kRightAngle, kLittleNoise)) << seed;
+  }
+}
+
+TEST(NoisyWedge, ExplainsACylinderLessThanASmoothSurface) {
+  constexpr double kRadius = 8.0;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const auto points = noisy_points(
+        seed, [](double u) { return std::sqrt(kRadius * kRadius - u * u) - kRadius; },
+        kLittleNoise);
+    EXPECT_TRUE(is_smooth(points, kRightAngle, kLittleNoise)) << seed;
+  }
 }
 
 TEST(NoisyWedge, NeedsPoints) {

@@ -130,6 +130,7 @@ ChainNode mean_of(std::span<const Crease> creases, std::span<const std::uint32_t
       mean.probability += crease.probability;
     }
     mean.bend += crease.bend / count;
+    mean.rounded += (crease.rounded ? 1.0 : 0.0) / count;
     mean.sharp += (crease.edge_class == kSharpEdge ? 1.0 : 0.0) / count;
     mean.boundary += (crease.edge_class == kBoundary ? 1.0 : 0.0) / count;
   }
@@ -285,6 +286,7 @@ std::vector<Crease> smoothed(std::span<const Crease> creases, double reach, Stag
       result[i].along = mean.along;
       result[i].side_a = mean.side_a;
       result[i].side_b = mean.side_b;
+      result[i].rounded = mean.rounded > 0.5;
     }
     stage.advance(end - begin);
   });

@@ -17,6 +17,7 @@ struct ChainNode {
   double edge_points = 0.0;  ///< number of its points of an edge class
   double probability = 0.0;  ///< their mean; that of all its points if there are none
   double bend = 0.0;         ///< mean
+  double rounded = 0.0;      ///< share of rounded creases
   double sharp = 0.0;        ///< share of sharp-edge points
   double boundary = 0.0;     ///< share of boundary points
 };
@@ -35,8 +36,8 @@ struct WedgeMatch {
 };
 WedgeMatch match(const Vec3& side_a, const Vec3& side_b, const Vec3& other_a, const Vec3& other_b);
 
-/// Every crease averaged with those nearer than `reach` (in spacings) that continue it. Advances
-/// `stage` by a step per crease.
+/// Every crease averaged with those nearer than `reach` (in spacings) that continue it; rounded if
+/// most of them are. Advances `stage` by a step per crease.
 std::vector<Crease> smoothed(std::span<const Crease> creases, double reach, Stage& stage);
 
 /// Chains from end to end, those of the densest creases first. They cross gaps up to `gap` where

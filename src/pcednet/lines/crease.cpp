@@ -74,6 +74,8 @@ std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,
   }
   const auto wedge = best_wedge(near_points, within);
   if (!wedge) return std::nullopt;
+  const double noise = within.wedge.noise;
+  const bool tells_smooth = noise >= kExactNoise && noise <= kMuchNoise;
   return Crease{.at = cloud.position(i) + spacing * wedge->at,
                 .along = wedge->along,
                 .side_a = wedge->side_a,
@@ -81,7 +83,8 @@ std::optional<Crease> crease_at(const OrderedPoints& cloud, std::uint32_t i,
                 .spacing = spacing,
                 .probability = cloud.probability(i),
                 .bend = static_cast<float>(bend_of(*wedge, near_points, within.wedge.plane)),
-                .edge_class = cloud.is_edge(i) ? cloud.edge_class(i) : kNonEdge};
+                .edge_class = cloud.is_edge(i) ? cloud.edge_class(i) : kNonEdge,
+                .rounded = tells_smooth && is_smooth(near_points, *wedge, noise)};
 }
 
 /// Whether the points around a crease explain why the nearest of them did not show it: they reach

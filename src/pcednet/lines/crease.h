@@ -28,6 +28,7 @@ struct Crease {
   float probability;     ///< that the edge point is on an edge
   float bend = 0.0f;     ///< of the adjacent surfaces into the wedge, in spacings; 0: plane
   EdgeClass edge_class;  ///< of the edge point
+  bool rounded = false;  ///< a smooth surface explains the points better than two planes
 };
 
 /// The angle, in radians, between the normals of two surfaces that leave their edge in these
@@ -49,7 +50,8 @@ std::vector<std::optional<Crease>> creases_at(const OrderedPoints& cloud,
 /// Appends those that there are.
 void append_found(std::span<const std::optional<Crease>> found, std::vector<Crease>& creases);
 
-/// The creases of the edge points; an edge point without two planes beside it has none.
+/// The creases of the edge points; an edge point without two planes beside it has none. In measured
+/// points with little noise some are rounded.
 std::vector<Crease> find_creases(const OrderedPoints& cloud, const Sampling& sampling,
                                  const Progress* progress);
 

@@ -109,19 +109,35 @@ void check(const EdgePoints& points, const LineOptions& options) {
   }
 }
 
-/// The chains of both kinds of creases; none is of both.
+template <typename Each>
+std::vector<Each> both(std::vector<Each> these, const std::vector<Each>& those) {
+  these.insert(these.end(), those.begin(), those.end());
+  return these;
+}
+
+/// Moves the creases of rounded surfaces to a list of their own.
+std::vector<Crease> take_rounded(std::vector<Crease>& creases) {
+  const auto rounded = std::stable_partition(creases.begin(), creases.end(),
+                                             [](const Crease& crease) { return !crease.rounded; });
+  std::vector<Crease> taken(rounded, creases.end());
+  creases.erase(rounded, creases.end());
+  return taken;
+}
+
+/// The chains of three kinds of creases: at edges, on rounded surfaces, at boundaries. None is of
+/// two.
 std::vector<Chain> make_chains(std::span<const Crease> creases, std::span<const Crease> boundaries,
                                const Limits& limits, double noise, const Progress* progress) {
   Stage smoothing(progress, "smooth creases", creases.size() + boundaries.size());
-  const std::vector<Crease> smooth = smoothed(creases, limits.smooth_within, smoothing);
+  std::vector<Crease> smooth = smoothed(creases, limits.smooth_within, smoothing);
+  const std::vector<Crease> rounded = take_rounded(smooth);
   const std::vector<Crease> smooth_boundaries =
       smoothed(boundaries, limits.smooth_within, smoothing);
   Stage tracing(progress, "chains", creases.size() + boundaries.size());
-  std::vector<Chain> chains = trace(smooth, limits.gap, noise, tracing);
-  for (Chain& chain : trace(smooth_boundaries, limits.gap, noise, tracing)) {
-    chains.push_back(std::move(chain));
-  }
-  return chains;
+  const auto traced = [&](std::span<const Crease> of_a_kind) {
+    return trace(of_a_kind, limits.gap, noise, tracing);
+  };
+  return both(both(traced(smooth), traced(rounded)), traced(smooth_boundaries));
 }
 
 std::vector<Piece> split_chains(const std::vector<Chain>& chains, double tolerance,
@@ -190,12 +206,6 @@ std::vector<Curve> drawn(std::span<const Piece> pieces, const FinishOptions& opt
   std::vector<Curve> curves;
   for (const Piece& piece : pieces) curves.push_back(curve_of(piece, options));
   return curves;
-}
-
-template <typename Each>
-std::vector<Each> both(std::vector<Each> these, const std::vector<Each>& those) {
-  these.insert(these.end(), those.begin(), those.end());
-  return these;
 }
 
 /// The chains and exact edges as polylines.

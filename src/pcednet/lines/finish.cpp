@@ -36,6 +36,8 @@ constexpr double kLeastProbable[] = {0.95, 0.68};
 /// A row of kLongRow spacings or more, with kDenseRow edge points in each, may be less probable.
 constexpr double kLongRow = 16.0, kDenseRow = 0.9, kProbableRow = 0.65;
 
+constexpr double kMostly = 0.5;  ///< of the creases
+
 /// Surfaces that bend by more are rounded at the edge unless as many of its points are sharp-edge.
 constexpr double kBend = 0.08, kFewSharp = 0.1;
 constexpr double kStrongBend = 0.16, kSomeSharp = 0.3;
@@ -232,7 +234,7 @@ bool is_sound(const Curve& curve) {
 
 EdgeClass class_of(const Piece& piece, double noise) {
   if (is_of_boundary(piece)) return kBoundary;
-  if (piece.rounded) return kSmoothEdge;
+  if (piece.rounded || mean_of(piece, &ChainNode::rounded) > kMostly) return kSmoothEdge;
   const double bend = mean_of(piece, &ChainNode::bend) - noise;
   const double sharp = mean_of(piece, &ChainNode::sharp);
   const bool rounded =

@@ -7,13 +7,12 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
-#include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/half_space.h"
 #include "pcednet/core/vector_clones.h"
 #include "pcednet/lines/lanes.h"
 #include "pcednet/lines/plane_line.h"
+#include "pcednet/lines/quadric.h"
 
 namespace pcednet::lines {
 namespace {
@@ -32,31 +31,14 @@ constexpr double kMostMeanSquare = 1.7;  ///< of the distances, in squared stand
 constexpr double kCutStep = 0.5;    ///< from one cut to the next
 constexpr double kFromPoint = 2.2;  ///< of the line from the origin
 
+constexpr double kBeyondNoise = 0.06;  ///< of a smooth surface from its points
+constexpr double kSqOutlierOfSmooth = 1.0;
+
+/// Of the squared distances to half-planes, what those to a smooth surface are at most.
+constexpr double kShareOfSmooth = 0.5;
+
 // In standard deviations.
 constexpr double kOutlier = 3.0;
-
-/// Least squares heights are fitted in it: z is across the points, the origin their mean.
-struct Frame {
-  Vec3 origin, x, y, z;
-
-  Vec3 of(const Vec3& place) const {
-    const Vec3 offset = place - origin;
-    return {offset.dot(x), offset.dot(y), offset.dot(z)};
-  }
-  Vec3 place(const Vec3& local) const {
-    return origin + local.x() * x + local.y() * y + local.z() * z;
-  }
-};
-
-Frame frame_of(const NearPoints& points, std::size_t count) {
-  NearPoints::Row weights{};
-  std::fill_n(weights.begin(), count, 1.0);
-  const PointMoments moments = points.moments(weights);
-  const Mat3 axes = eigendecomposition(moments.covariance()).vectors;
-  const Vec3 z = axes.col(0).normalized();
-  const Vec3 x = axes.col(2).normalized();
-  return {moments.mean(), x, z.cross(x), z};
-}
 
 struct HalfPlanes {
   LocalPlane a, b;
@@ -118,39 +100,6 @@ void fit_planes(Parts& parts) {
                        (determinant > kLeastSpread * weight * weight);
     parts.slope_x[i] = slope_x, parts.slope_y[i] = slope_y;
     parts.error[i] = sound ? error : kInfinity;
-  }
-}
-
-/// The points in their frame.
-struct FramedPoints {
-  Frame frame;
-  Vec3 origin;  ///< the edge point
-  std::size_t count;
-  NearPoints::Row x{}, y{}, z{};
-  std::array<PointMoments, NearPoints::kMost> moments;
-
-  FramedPoints(const NearPoints& points, std::size_t count_)
-      : frame(frame_of(points, count_)), origin(frame.of(Vec3::Zero())), count(count_) {
-    project(points, frame.x, x);
-    project(points, frame.y, y);
-    project(points, frame.z, z);
-    for (std::size_t i = 0; i < count; ++i) {
-      moments[i] = {1.0,         x[i],        y[i],        z[i],        x[i] * x[i],
-                    x[i] * y[i], y[i] * y[i], x[i] * z[i], y[i] * z[i], z[i] * z[i]};
-    }
-  }
-
- private:
-  void project(const NearPoints& points, const Vec3& axis, NearPoints::Row& row) const;
-};
-
-PCEDNET_VECTOR_CLONES
-void FramedPoints::project(const NearPoints& points, const Vec3& axis, NearPoints::Row& row) const {
-  const double axis_x = axis.x(), axis_y = axis.y(), axis_z = axis.z();
-  const double from_x = frame.origin.x(), from_y = frame.origin.y(), from_z = frame.origin.z();
-  for (std::size_t i = 0; i < count; ++i) {
-    row[i] = (points.x[i] - from_x) * axis_x + (points.y[i] - from_y) * axis_y +
-             (points.z[i] - from_z) * axis_z;
   }
 }
 
@@ -268,68 +217,6 @@ std::optional<HalfPlanes> improved(const HalfPlanes& halves, const NearPoints& p
   return half_planes(*plane_a, *plane_b, a.mean(), b.mean());
 }
 
-/// Sums over places: of x^i y^j with i + j <= 4 in the order 1, x, y, xx, xy, yy, xxx ..., and of z
-/// with each of the first six.
-struct QuadricSums {
-  std::array<double, 15> xy;
-  std::array<double, 6> z;
-};
-
-PCEDNET_VECTOR_CLONES
-void add_up(const FramedPoints& points, const NearPoints::Row& ones, QuadricSums& result) {
-  Lanes xy[15] = {}, of_z[6] = {};
-  for (std::size_t i = 0; i < points.count; i += kLanes) {
-    Lanes x, y, z, one;
-    load(&points.x[i], x);
-    load(&points.y[i], y);
-    load(&points.z[i], z);
-    load(&ones[i], one);
-    const Lanes xx = x * x, xy1 = x * y, yy = y * y;
-    const Lanes terms[15] = {one,    x,      y,       xx,       xy1,     yy,       xx * x, xx * y,
-                             yy * x, yy * y, xx * xx, xx * xy1, xx * yy, xy1 * yy, yy * yy};
-    for (int k = 0; k < 15; ++k) xy[k] += terms[k];
-    for (int k = 0; k < 6; ++k) of_z[k] += terms[k] * z;
-  }
-  for (std::size_t k = 0; k < 15; ++k) result.xy[k] = sum_of(xy[k]);
-  for (std::size_t k = 0; k < 6; ++k) result.z[k] = sum_of(of_z[k]);
-}
-
-/// The squared distances of points to the surface z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2,
-/// to first order, each at most `sq_most`.
-PCEDNET_VECTOR_CLONES
-void sq_distances_to_quadric(const FramedPoints& points, const double* c, double sq_most,
-                             NearPoints::Row& result) {
-  const double c0 = c[0], c1 = c[1], c2 = c[2], c3 = c[3], c4 = c[4], c5 = c[5];
-  for (std::size_t i = 0; i < points.count; ++i) {
-    const double x = points.x[i], y = points.y[i];
-    const double away = points.z[i] - (c0 + c1 * x + c2 * y + c3 * x * x + c4 * x * y + c5 * y * y);
-    const double slope_x = c1 + 2.0 * c3 * x + c4 * y, slope_y = c2 + c4 * x + 2.0 * c5 * y;
-    result[i] = smaller(away * away / (1.0 + slope_x * slope_x + slope_y * slope_y), sq_most);
-  }
-}
-
-/// Sum of squared distances to the best quadratic height, each at most that of an outlier.
-double error_of_quadric(const FramedPoints& points, double sq_outlier) {
-  constexpr std::size_t kPowers[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};
-  NearPoints::Row row{};
-  std::fill_n(row.begin(), points.count, 1.0);
-  QuadricSums sums;
-  add_up(points, row, sums);
-  Eigen::Matrix<double, 6, 6> left;
-  Eigen::Matrix<double, 6, 1> right;
-  for (Eigen::Index a = 0; a < 6; ++a) {
-    for (Eigen::Index b = 0; b <= a; ++b) {
-      const std::size_t of_y = kPowers[a][1] + kPowers[b][1];
-      const std::size_t all = kPowers[a][0] + kPowers[b][0] + of_y;
-      left(a, b) = sums.xy[all * (all + 1) / 2 + of_y];
-    }
-    right[a] = sums.z[static_cast<std::size_t>(a)];
-  }
-  const Eigen::Matrix<double, 6, 1> c = left.ldlt().solve(right);  // reads the lower half
-  sq_distances_to_quadric(points, c.data(), sq_outlier, row);
-  return std::accumulate(row.begin(), row.begin() + points.count, 0.0);
-}
-
 /// The points near each half-plane, and the sum of squared distances, each at most that of an
 /// outlier.
 struct Explained {
@@ -363,6 +250,20 @@ bool explain(const HalfPlanes& halves, const NearPoints& points, const FramedPoi
 }
 
 }  // namespace
+
+bool is_smooth(const NearPoints& points, const Wedge& wedge, double noise) {
+  const FramedPoints framed(points, points.count);
+  const double quadric = error_of_quadric(framed, kSqOutlierOfSmooth);
+  const auto plane = [&](const Vec3& side) {
+    const Vec3 normal = wedge.along.cross(side);
+    return LocalPlane{normal, normal.dot(wedge.at), 0};
+  };
+  const HalfPlanes halves = {plane(wedge.side_a), plane(wedge.side_b), wedge};
+  const SqDistances to(halves, points, points.count);
+  const double planes = explained_by(to, points.count, kSqOutlierOfSmooth).error;
+  return quadric < kShareOfSmooth * planes &&
+         quadric < std::pow(noise + kBeyondNoise, 2) * static_cast<double>(points.count);
+}
 
 std::optional<Wedge> fit_half_planes(const NearPoints& points, std::size_t count, double noise) {
   count = std::min(count, points.count);

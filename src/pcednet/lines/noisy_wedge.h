@@ -17,4 +17,8 @@ namespace pcednet::lines {
 /// assigning each point to the nearer half-plane.
 std::optional<Wedge> fit_half_planes(const NearPoints& points, std::size_t count, double noise);
 
+/// Whether a smooth surface, quadratic around the origin, explains the points well and better than
+/// the half-planes of the wedge: they are of a fillet or another rounded surface.
+bool is_smooth(const NearPoints& points, const Wedge& wedge, double noise);
+
 }  // namespace pcednet::lines
