@@ -1,17 +1,17 @@
 // What frames the view: the bar above, the tools beside, words over it.
 
-import { BOUNDARY } from "../shared/colours";
+import { BOUNDARY, type Meaning } from "../shared/colours";
 import { h } from "../shared/dom";
 import { refusalOf, type Client } from "./client";
 import type { Saved } from "./files";
 import { NONE, paintable, paletteOf } from "./classes";
-import { isRamp, rampEnds, rampStops, FEATURE_NAMES } from "./colouring";
+import { fileClassesOf, isRamp, rampEnds, rampStops, FEATURE_NAMES } from "./colouring";
 import { MODES, PREDICTED, type Command } from "./commands";
 import { count, length, stageText } from "./format";
 import { downloadMenu } from "./download_menu";
 import { icon, type IconName } from "./icons";
 import { allow, button, unlessRefused } from "./panel";
-import type { AppStore, Tool } from "./store";
+import type { AppStore, State, Tool } from "./store";
 import { hintWords } from "./words";
 
 const TOOLS: { tool: Tool; icon: IconName; name: string; key: string }[] = [
@@ -102,6 +102,27 @@ export function header(store: AppStore, save: (what: Saved) => void, client: Cli
   );
 }
 
+/** The classes that a mode shows, by their colours; none in the modes of no classes. */
+function meaningsOf(state: State): Meaning[] {
+  const { mode, edges } = state;
+  const palette = paletteOf(state);
+  if (mode === "file" || mode === "las") {
+    const shown = fileClassesOf(state);
+    const all = shown.reduce((sum, { points }) => sum + points, 0);
+    return all === state.session?.points ? shown : [...shown, palette[NONE]];
+  }
+  if (mode !== "labels" && mode !== "prediction") return [];
+  const ids = [...paintable(state).map(({ id }) => id), NONE];
+  if (edges && mode === "prediction") ids.splice(BOUNDARY, 0, BOUNDARY); // nobody paints it
+  return ids.map((id) => palette[id]);
+}
+
+function entry({ name, colour }: Meaning): HTMLElement {
+  const swatch = h("span", { class: "swatch" });
+  swatch.style.background = colour;
+  return h("span", { class: "entry" }, swatch, name);
+}
+
 /** What the colours mean. */
 export function legend(store: AppStore): HTMLElement {
   const element = h("div", { class: "legend" });
@@ -121,18 +142,8 @@ export function legend(store: AppStore): HTMLElement {
         bar.style.background = `linear-gradient(to right, ${rampStops(store.now).join(", ")})`;
         const [low, high] = rampEnds(store.now);
         element.append(h("span", { class: "scale" }, low, bar, high));
-      } else if (mode === "labels" || mode === "prediction") {
-        const ids = [...paintable(store.now).map(({ id }) => id), NONE];
-        if (store.now.edges && mode === "prediction") ids.splice(BOUNDARY, 0, BOUNDARY); // nobody paints it
-        const palette = paletteOf(store.now);
-        element.append(
-          ...ids.map((id) => {
-            const { name, colour } = palette[id];
-            const swatch = h("span", { class: "swatch" });
-            swatch.style.background = colour;
-            return h("span", { class: "entry" }, swatch, name);
-          }),
-        );
+      } else {
+        element.append(...meaningsOf(store.now).map(entry));
       }
     },
   );

@@ -39,6 +39,13 @@ export function paletteOf({ classes, edges, safePalette }: Known): Meaning[] {
   return [...palette, known[NO_LABEL]];
 }
 
+/** By class as the program names them; boundary, too, where there are edge classes. */
+export function classNames({ classes, edges }: Pick<State, "classes" | "edges">): string[] {
+  const names = edges ? CLASS_EDGES.map(({ name }) => name) : [];
+  for (const { id, name } of classes) names[id] = name;
+  return names;
+}
+
 /** Own classes that are there. */
 export const ownClasses = ({ classes, edges }: Pick<State, "classes" | "edges">): ClassInfo[] =>
   classes.filter(({ id, removed }) => !removed && (!edges || id >= EDGE_CLASSES));

@@ -4,7 +4,7 @@ import { ApiError, NO_ANSWER, type Api } from "./api";
 import { usableRadius } from "./brush";
 import { paintable, usableClass, type WantedClass } from "./classes";
 import { Files } from "./files";
-import { PREDICTED } from "./commands";
+import { modesOf, PREDICTED } from "./commands";
 import { LineClient } from "./line_client";
 import type { Stage } from "./stage";
 import type { AppStore, State } from "./store";
@@ -250,7 +250,7 @@ export class Client {
     const view = this.views.get(session.cloud);
     store.set({
       radius: usableRadius(session.spacing * store.now.brush, session),
-      mode: first || (store.now.mode === "rgb" && !session.has_colours) ? usual : store.now.mode,
+      mode: first || !modesOf(store).includes(store.now.mode) ? usual : store.now.mode,
       ...(first ? { scale: Math.floor(session.scales.length / 2) } : {}),
       hasPrediction,
       ...resumed(view, store.now),

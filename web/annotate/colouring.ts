@@ -2,6 +2,7 @@
 
 import { PLAIN, type Stroke } from "../shared/line_layer";
 import { NONE, paletteOf } from "./classes";
+import { classBytes, fileLabels, lasClasses, type ShownClass } from "./file_classes";
 import type { Appearance } from "./painter";
 import { rampBytes, STOPS, type RampName } from "./ramp";
 import { activeClip, type ColourMode, type State } from "./store";
@@ -21,6 +22,12 @@ export const FEATURE_NAMES: Record<string, string> = {
   dphi: "∂φ, change of fitness with scale",
 };
 
+/** The classes of the file that a mode shows; none in another mode. */
+export function fileClassesOf(state: State): ShownClass[] {
+  if (state.mode === "file") return fileLabels(state);
+  return state.mode === "las" ? lasClasses(state) : [];
+}
+
 export const isRamp = (mode: ColourMode): boolean => ["confidence", "p_sharp", "feature"].includes(mode);
 
 export function rampOf({ mode, safePalette }: State): RampName {
@@ -32,16 +39,19 @@ export function rampOf({ mode, safePalette }: State): RampName {
 /** The server's values that a mode needs, as a query. */
 export function valuesQuery({ mode, feature, scale }: State): string | null {
   if (mode === "feature") return `of=feature&feature=${feature}&scale=${scale}`;
+  if (mode === "file") return "of=file_labels";
+  if (mode === "las") return "of=las_classes";
   return isRamp(mode) ? `of=${mode}` : null;
 }
 
 export function appearanceOf(state: State, background: string): Appearance {
   const { mode } = state;
+  const ofFile = fileClassesOf(state);
   return {
-    mode: mode === "confidence" || mode === "p_sharp" || mode === "feature" ? "ramp" : mode,
+    mode: mode === "rgb" || mode === "normals" || mode === "labels" || mode === "prediction" ? mode : "ramp",
     paintOnTop: state.paintOnTop,
     palette: paletteOf(state).map((meaning) => meaning.colour),
-    ramp: rampBytes(rampOf(state)),
+    ramp: ofFile.length > 0 ? classBytes(ofFile) : rampBytes(rampOf(state)),
     hidden: state.hidden,
     clip: activeClip(state),
     pointSize: state.pointSize,

@@ -43,6 +43,8 @@ export interface Hands {
 export const MODES: { mode: ColourMode; name: string }[] = [
   { mode: "rgb", name: "original colours" },
   { mode: "normals", name: "normals" },
+  { mode: "file", name: "labels of the file" },
+  { mode: "las", name: "LAS classes" },
   { mode: "labels", name: "painted labels" },
   { mode: "prediction", name: "prediction" },
   { mode: "confidence", name: "confidence" },
@@ -58,6 +60,8 @@ export function modesOf({ now }: Pick<AppStore, "now">): ColourMode[] {
   return MODES.map(({ mode }) => mode).filter(
     (mode) =>
       (mode !== "rgb" || now.session?.has_colours) &&
+      (mode !== "file" || (now.session?.file_labels ?? []).length > 0) &&
+      (mode !== "las" || (now.session?.las_classes ?? []).length > 0) &&
       (mode !== "p_sharp" || now.edges) &&
       (now.hasPrediction || !PREDICTED.includes(mode)),
   );

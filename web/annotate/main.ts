@@ -10,6 +10,7 @@ import { Client, refusalOf } from "./client";
 import type { Saved } from "./files";
 import { appearanceOf, paintColour, strokesOf, valuesQuery } from "./colouring";
 import { bindKeys, commandsOf } from "./commands";
+import { fileStrokes } from "./file_classes";
 import { Measure } from "./measure";
 import { Outline } from "./outline";
 import { Overlay } from "./overlay";
@@ -114,6 +115,10 @@ function open(page: HTMLElement): void {
     if (refusal) notices.warn(refusal);
     else if (store.now.session) editClassesDialog(store.now, (table) => client.setClasses(table));
   };
+  const takeFileLabels = (): void => {
+    for (const stroke of fileStrokes(store.now)) client.paint(stroke);
+    notices.say("Painted as in the file, one stroke a class: undo takes them back one by one.");
+  };
   const commands = commandsOf({
     store,
     stage,
@@ -150,7 +155,7 @@ function open(page: HTMLElement): void {
       "aside",
       { "aria-label": "Settings" },
       cloudsPanel(store, client),
-      classesPanel(store, brush, editClasses),
+      classesPanel(store, brush, editClasses, takeFileLabels),
       viewPanel(store, press),
       trainingPanel(store, client),
       uncertainPanel(store, press),
@@ -161,8 +166,9 @@ function open(page: HTMLElement): void {
     help.element,
   );
 
-  store.watch(["mode", "paintOnTop", "safePalette", "hidden", "clip", "pointSize", "eyeDome", "classes", "edges"], () =>
-    stage.setAppearance(appearanceOf(store.now, css("--stage"))),
+  store.watch(
+    ["mode", "paintOnTop", "safePalette", "hidden", "clip", "pointSize", "eyeDome", "classes", "edges", "session"],
+    () => stage.setAppearance(appearanceOf(store.now, css("--stage"))),
   );
   store.watch(["mode", "feature", "scale"], () => stage.loader.setValues(valuesQuery(store.now)));
   store.watch(["lines", "line", "showLines", "safePalette", "session"], () =>

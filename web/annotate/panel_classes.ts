@@ -8,7 +8,8 @@ import { toggled } from "./commands";
 import { boxDiagonal } from "./geometry";
 import { count, length } from "./format";
 import { icon } from "./icons";
-import { button, checkbox, section, slider } from "./panel";
+import { fileStrokes } from "./file_classes";
+import { allow, button, checkbox, section, slider } from "./panel";
 import type { AppStore } from "./store";
 import { NO_CLASS } from "./types";
 
@@ -75,7 +76,7 @@ function classRows(store: AppStore): HTMLElement {
   return list;
 }
 
-export function classesPanel(store: AppStore, brush: Brush, edit: () => void): HTMLElement {
+export function classesPanel(store: AppStore, brush: Brush, edit: () => void, takeFileLabels: () => void): HTMLElement {
   const size = slider("Brush", 0, 1, 0.001, (at) => {
     const { session } = store.now;
     if (!session) return;
@@ -94,12 +95,18 @@ export function classesPanel(store: AppStore, brush: Brush, edit: () => void): H
   });
   const change = button("Classes…", edit, "⇧E");
   change.title = "Add, rename, recolour or remove classes (Shift+E)";
-  store.watch(["writer", "connected"], () => (change.disabled = refusalOf(store.now) !== ""));
+  const take = button("Paint as in the file", takeFileLabels);
+  take.title = "Paint every unpainted point with its class in the file, within the clipping box if it is in use";
+  store.watch(["writer", "connected"], () => {
+    change.disabled = refusalOf(store.now) !== "";
+    allow(take, refusalOf(store.now) === "");
+  });
+  store.watch(["session", "classes", "edges"], () => (take.hidden = fileStrokes(store.now).length === 0));
   return section(
     "Paint",
     true,
     classRows(store),
-    h("div", { class: "buttons" }, change),
+    h("div", { class: "buttons" }, change, take),
     size.element,
     protect.element,
     front.element,

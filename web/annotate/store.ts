@@ -3,7 +3,16 @@
 import type { Box, ClassInfo, CloudInfo, Lines, Run, Session, Settings, Uncertain, Vec3 } from "./types";
 
 export type Tool = "navigate" | "brush" | "lasso" | "polygon" | "measure";
-export type ColourMode = "rgb" | "normals" | "labels" | "prediction" | "confidence" | "p_sharp" | "feature";
+export type ColourMode =
+  | "rgb"
+  | "normals"
+  | "file"
+  | "las"
+  | "labels"
+  | "prediction"
+  | "confidence"
+  | "p_sharp"
+  | "feature";
 
 export type Theme = "system" | "light" | "dark";
 

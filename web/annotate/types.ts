@@ -27,6 +27,15 @@ export interface ClassInfo {
   removed?: boolean;
 }
 
+/** A class that points have in the file: of its labels, or of LAS. */
+export interface FileClass {
+  id: number;
+  name: string;
+  /** 0 to 255. */
+  colour: Vec3;
+  points: number;
+}
+
 /** The project's classes: all that can be painted; where own classes follow those of edges, boundary too. */
 export interface Classes {
   classes: ClassInfo[];
@@ -94,6 +103,9 @@ export interface Session extends Classes {
   /** What settings.start may be besides "random". */
   starts: Start[];
   nodes: NodeInfo[];
+  /** None if the file has none. */
+  file_labels: FileClass[];
+  las_classes: FileClass[];
   /** What the user should know of the cloud. */
   notes: string[];
   strokes: number;
@@ -218,6 +230,11 @@ export interface PolygonStroke extends StrokeCommon {
   viewport: [number, number];
 }
 
-export type Stroke = BrushStroke | PolygonStroke;
+/** The points that have the class in the file. */
+export interface FileStroke extends StrokeCommon {
+  tool: "file";
+}
+
+export type Stroke = BrushStroke | PolygonStroke | FileStroke;
 
 export const NO_CLASS = 255;

@@ -75,7 +75,10 @@ Shown shown_of(const std::string& of) {
   if (of == "confidence") return Shown::kConfidence;
   if (of == "p_sharp") return Shown::kPSharp;
   if (of == "feature") return Shown::kFeature;
-  throw Error(ErrorKind::kUsage, "of: labels, prediction, confidence, p_sharp or feature");
+  if (of == "file_labels") return Shown::kFileLabels;
+  if (of == "las_classes") return Shown::kLasClasses;
+  throw Error(ErrorKind::kUsage,
+              "of: labels, prediction, confidence, p_sharp, feature, file_labels or las_classes");
 }
 
 /// A header that offers a file. The input's name, of which `name` is made, may hold any bytes.

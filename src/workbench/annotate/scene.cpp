@@ -53,6 +53,8 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
   if (const auto note = io::note_on_faces(scene->cloud); !note.empty()) {
     scene->warnings.push_back(note);
   }
+  scene->labels = file_labels(scene->cloud, input);
+  scene->las_classes = las_classes(scene->cloud);
   scene->input = {as_utf8(input.filename().string()), digest_of_file(input), scene->cloud.size()};
   with_name_in_errors(input.string(),
                       [&] { scene->prepared = detect::prepare(scene->cloud, {}, progress); });

@@ -8,6 +8,7 @@
 #include "pcednet/detect/boundary.h"
 #include "pcednet/detect/prepare.h"
 #include "workbench/annotate/described.h"
+#include "workbench/annotate/file_classes.h"
 #include "workbench/annotate/layout.h"
 #include "workbench/annotate/project.h"
 #include "workbench/annotate/select.h"
@@ -19,6 +20,7 @@ struct Scene {
   InputIdentity input = {};
   PointCloud cloud = {};
   std::vector<std::string> warnings = {};
+  FileClasses labels = {}, las_classes = {};  ///< see file_labels() and las_classes()
   detect::PreparedCloud prepared = {};
   BoundingBox bounds = {};
   Vec3 origin = Vec3::Zero();  ///< what local coordinates are relative to

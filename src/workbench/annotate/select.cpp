@@ -159,6 +159,17 @@ std::vector<std::uint32_t> Selector::select(const Stroke& stroke) const {
   return stroke.tool == Tool::kBrush ? brush(stroke) : polygon(stroke);
 }
 
+std::vector<std::uint32_t> Selector::labelled(std::span<const std::uint8_t> labels,
+                                              const Stroke& stroke) const {
+  std::vector<std::uint32_t> points;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] != stroke.edge_class || !positions_[i].allFinite()) continue;
+    if (is_clipped(stroke, positions_[i] - origin_)) continue;
+    points.push_back(static_cast<std::uint32_t>(i));
+  }
+  return points;
+}
+
 std::vector<std::uint32_t> Selector::brush(const Stroke& stroke) const {
   std::vector<std::uint8_t> met(positions_.size(), 0);
   parallel_blocks(stroke.centres.size(), 8, [&](std::size_t begin, std::size_t end) {

@@ -24,6 +24,10 @@ class Selector {
   /// plane; with front_only, those that no nearer point hides.
   std::vector<std::uint32_t> select(const Stroke& stroke) const;
 
+  /// The points whose `labels` are the class of the stroke, within its clip box, ascending.
+  std::vector<std::uint32_t> labelled(std::span<const std::uint8_t> labels,
+                                      const Stroke& stroke) const;
+
   const spatial::KdTree& tree() const { return tree_; }
 
  private:

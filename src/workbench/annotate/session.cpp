@@ -35,6 +35,20 @@ std::vector<std::uint32_t> nodes_with(std::span<const std::uint32_t> points, std
   return {nodes.begin(), nodes.end()};
 }
 
+/// The points that a stroke covers. Throws Error(kUsage) if it is of a class of the input that is
+/// not the project's class of that number.
+std::vector<std::uint32_t> points_under(const Stroke& stroke, const Scene& scene,
+                                        const ProjectClasses& classes) {
+  if (stroke.tool != Tool::kFile) return scene.selector->select(stroke);
+  const auto& known = scene.labels.classes;
+  const auto its = std::ranges::find(known, stroke.edge_class, &FileClass::id);
+  if (its == known.end() || its->name != classes.table[stroke.edge_class].name) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("stroke: the file has no labels of class {}", stroke.edge_class));
+  }
+  return scene.selector->labelled(scene.labels.ids, stroke);
+}
+
 }  // namespace
 
 Session::Session(SessionOptions options) : state_(std::make_unique<State>(std::move(options))) {
@@ -160,7 +174,7 @@ Painted Session::paint(const Stroke& stroke) {
   if (const auto found = s.answers.find(stroke.id); found != s.answers.end()) return found->second;
   const auto prediction = s.runs.prediction(stroke.cloud);
   auto points =
-      points_to_change(s.scenes[stroke.cloud]->selector->select(stroke), stroke,
+      points_to_change(points_under(stroke, *s.scenes[stroke.cloud], s.painting->classes()), stroke,
                        s.part(s.painting->labels().classes(), stroke.cloud),
                        prediction ? std::span<const std::uint8_t>(prediction->result.classes)
                                   : std::span<const std::uint8_t>());

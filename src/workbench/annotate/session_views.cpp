@@ -88,6 +88,19 @@ std::vector<std::uint32_t> Session::State::points_of(const std::vector<std::size
   return points;
 }
 
+namespace {
+
+/// The class of each of the points; throws NotFound if the input has none.
+std::vector<std::uint8_t> bytes_at(const FileClasses& of, std::span<const std::uint32_t> points) {
+  if (of.ids.empty()) throw NotFound("the file has no such classes");
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(points.size());
+  for (const std::uint32_t point : points) bytes.push_back(of.ids[point]);
+  return bytes;
+}
+
+}  // namespace
+
 Session::Values Session::values(Shown what, const std::vector<std::size_t>& nodes, int feature,
                                 int scale, std::size_t cloud) const {
   const Lock lock(state_->mutex);
@@ -96,6 +109,10 @@ Session::Values Session::values(Shown what, const std::vector<std::size_t>& node
   const std::vector<std::uint32_t> points = s.points_of(nodes, cloud);
   if (what == Shown::kFeature) {
     return {feature_bytes(*s.described[cloud], points, feature, scale), 0};
+  }
+  if (what == Shown::kFileLabels || what == Shown::kLasClasses) {
+    const Scene& scene = *s.scenes[cloud];
+    return {bytes_at(what == Shown::kFileLabels ? scene.labels : scene.las_classes, points), 0};
   }
   const auto prediction = s.runs.prediction(cloud);
   const auto labels = s.part(s.painting->labels().classes(), cloud);

@@ -11,7 +11,8 @@
 
 namespace pcednet::annotate {
 
-enum class Tool { kBrush, kPolygon };
+/// kFile takes the points that have the class in the input.
+enum class Tool { kBrush, kPolygon, kFile };
 
 /// One use of a tool. Coordinates are local: minus the session's origin.
 struct Stroke {

@@ -1,0 +1,116 @@
+#include "workbench/annotate/file_classes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+
+#include "pcednet/cloud/class_table.h"
+#include "pcednet/core/error.h"
+#include "pcednet/detect/result_truth.h"
+#include "pcednet/formats/labels.h"
+#include "pcednet/io/promote.h"
+
+namespace pcednet::annotate {
+namespace {
+
+struct LasClass {
+  std::string_view name;
+  Rgb colour;
+};
+
+/// By code: the names of the standard, also those of one group of point formats alone, and colours
+/// that maps use for such things.
+constexpr std::array<LasClass, 23> kLasClasses = {{
+    {"never classified", {125, 132, 142}},
+    {"unassigned", {190, 196, 204}},
+    {"ground", {166, 118, 66}},
+    {"low vegetation", {188, 214, 110}},
+    {"medium vegetation", {108, 179, 68}},
+    {"high vegetation", {38, 118, 46}},
+    {"building", {222, 94, 56}},
+    {"low noise", {216, 27, 96}},
+    {"model key point", {134, 87, 168}},
+    {"water", {47, 120, 183}},
+    {"rail", {93, 74, 102}},
+    {"road surface", {72, 82, 96}},
+    {"overlap", {201, 166, 216}},
+    {"guard wire", {242, 212, 61}},
+    {"conductor wire", {240, 163, 10}},
+    {"transmission tower", {122, 75, 158}},
+    {"wire connector", {194, 92, 150}},
+    {"bridge deck", {127, 200, 216}},
+    {"high noise", {255, 64, 129}},
+    {"overhead structure", {138, 106, 79}},
+    {"ignored ground", {214, 190, 150}},
+    {"snow", {240, 246, 252}},
+    {"temporal exclusion", {84, 92, 104}},
+}};
+
+FileClass las_class(std::uint8_t code) {
+  if (code >= kLasClasses.size()) {
+    return {.id = code, .name = fmt::format("class {}", code), .colour = usual_colour(code)};
+  }
+  const auto& [name, colour] = kLasClasses[code];
+  return {.id = code, .name = fmt::format("{} {}", code, name), .colour = colour};
+}
+
+FileClass class_of_table(std::uint8_t id, const ClassTable& table) {
+  if (id >= table.size()) {
+    return {.id = id, .name = fmt::format("class {}", id), .colour = usual_colour(id)};
+  }
+  return {.id = id, .name = table[id].name, .colour = table[id].colour};
+}
+
+FileClasses counted(std::vector<std::uint8_t> ids,
+                    const std::function<FileClass(std::uint8_t id)>& class_of) {
+  std::array<std::size_t, kUnlabelled + 1> counts = {};
+  for (const std::uint8_t id : ids) ++counts[id];
+  FileClasses found;
+  for (std::size_t id = 0; id < kUnlabelled; ++id) {
+    if (counts[id] == 0) continue;
+    found.classes.push_back(class_of(static_cast<std::uint8_t>(id)));
+    found.classes.back().points = counts[id];
+  }
+  if (!found.classes.empty()) found.ids = std::move(ids);
+  return found;
+}
+
+/// A column of a name that we give may hold other numbers than ours: then it says nothing.
+std::vector<std::uint8_t> own_labels(const PointCloud& cloud, const std::filesystem::path& file) {
+  try {
+    return formats::labels_of(cloud, file);
+  } catch (const Error&) {
+    return cloud.labels;
+  }
+}
+
+}  // namespace
+
+FileClasses file_labels(const PointCloud& cloud, const std::filesystem::path& file) {
+  std::vector<std::uint8_t> ids;
+  if (auto truth = detect::truth_of_result(cloud)) ids = std::move(truth->labels);
+  if (ids.empty()) ids = own_labels(cloud, file);
+  if (ids.empty()) {
+    if (auto column = formats::edge_column_of(cloud)) ids = std::move(column->classes);
+  }
+  const ClassTable table = classes_of(cloud.comments);
+  return counted(std::move(ids), [&](std::uint8_t id) { return class_of_table(id, table); });
+}
+
+FileClasses las_classes(const PointCloud& cloud) {
+  const Attribute* field = io::find_called(cloud, "classification");
+  if (!field) return {};
+  std::vector<std::uint8_t> codes;
+  codes.reserve(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const auto code = io::to_label(field->value(i));
+    if (!code) return {};
+    codes.push_back(*code);
+  }
+  FileClasses found = counted(std::move(codes), las_class);
+  return found.classes.size() < 2 ? FileClasses{} : found;
+}
+
+}  // namespace pcednet::annotate
