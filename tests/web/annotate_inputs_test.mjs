@@ -160,6 +160,23 @@ test("a page that opens after the cloud was loaded tells of the cloud, too, and 
   }
 });
 
+test("a notice on a phone leaves the cloud in sight, and a tap removes it", async () => {
+  const phone = await its.browser.newPage({ viewport: { width: 400, height: 800 }, hasTouch: true, isMobile: true });
+  await phone.goto(its.server.address);
+  await phone.waitForFunction(() => annotator.store.now.progress === null);
+  const long =
+    "no normals in the file: estimated from the 12 nearest points and oriented consistently (1 connected part, open: up)";
+  await phone.evaluate((text) => annotator.client.words.warn(text), long);
+  const notice = phone.locator(".notice", { hasText: long });
+  const [{ height }, view] = [await notice.boundingBox(), await phone.locator("main").boundingBox()];
+  assert.ok(height < 0.14 * view.height, `${height} of ${view.height}`);
+  const tops = await phone.locator("header .saves > *").evaluateAll((all) => all.map((one) => one.offsetTop));
+  assert.ok(Math.max(...tops) - Math.min(...tops) < 5, `all that saves in one row: ${tops}`);
+  await notice.tap({ position: { x: 20, y: 10 } });
+  assert.equal(await notice.count(), 0);
+  await phone.close();
+});
+
 test("says that it fetches the points until there are some", () =>
   withThree(["--project", path.join(folder, "fetching.json")], async (few, address) => {
     let release;

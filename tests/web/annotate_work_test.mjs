@@ -54,6 +54,11 @@ function review({ lines = [line(), line(), line()], ask = async () => true } = {
   return { page, client, its, warnings, asked: server.asked, decisions };
 }
 
+test("a notice stays as long as it takes to read it, at most eight seconds", () => {
+  assert.ok(words.readingMs("Saved roof.ply") < 3500);
+  assert.equal(words.readingMs("x".repeat(500)), 8000);
+});
+
 test("quick decisions are on one line after another, and are sent in their order", async () => {
   const { its, page, asked, decisions } = review();
   its.decide("accepted");

@@ -3,18 +3,20 @@
 import { h } from "../shared/dom";
 import type { Command } from "./commands";
 
-const SAY_MS = 6000;
-const WARN_MS = 12000;
+/** How long a message stays: as long as it takes to read it. */
+export const readingMs = (text: string): number => Math.min(2500 + 45 * text.length, 8000);
+
+const LOOKED_AT_MS = 1000;
 
 export class Notices {
   readonly element = h("div", { class: "notices", "aria-live": "polite" });
 
   say(text: string): void {
-    this.add(text, "notice", SAY_MS);
+    this.add(text, "notice");
   }
 
   warn(text: string): void {
-    this.add(text, "notice warning", WARN_MS);
+    this.add(text, "notice warning");
   }
 
   /** Takes back what is no longer so. */
@@ -22,16 +24,21 @@ export class Notices {
     for (const notice of [...this.element.children]) if (notice.firstChild?.textContent === text) notice.remove();
   }
 
-  private add(text: string, kind: string, milliseconds: number): void {
+  /** A click on it or a tap removes it; it stays while the pointer or the focus is on it. */
+  private add(text: string, kind: string): void {
     this.unsay(text);
     const notice = h(
       "p",
-      { class: kind },
+      { class: kind, onclick: () => getSelection()?.isCollapsed !== false && notice.remove() },
       h("span", {}, text),
       h("button", { type: "button", "aria-label": "Close", onclick: () => notice.remove() }, "×"),
     );
     this.element.append(notice);
-    window.setTimeout(() => notice.remove(), milliseconds);
+    const expire = (): void => {
+      if (notice.matches(":hover, :focus-within")) window.setTimeout(expire, LOOKED_AT_MS);
+      else notice.remove();
+    };
+    window.setTimeout(expire, readingMs(text));
   }
 }
 
