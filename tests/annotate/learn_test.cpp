@@ -38,5 +38,15 @@ TEST(Learn, LeavesSmoothEdgeOutAsLongAsNoneIsPainted) {
   EXPECT_ERROR(ErrorKind::kInsufficient, classes_to_learn(none, {.classes = 2}));
 }
 
+TEST(Learn, TellsWhichEpochsAreTheContextNetworks) {
+  Start start{.model = detect::load_model(PCEDNET_SOURCE_DIR "/models/scan.safetensors")};
+  EXPECT_EQ(epochs_of(&start), 2 * kAdaptEpochs);
+  EXPECT_EQ(context_epochs_of(&start), kAdaptEpochs);
+  start.model.context.reset();
+  EXPECT_EQ(epochs_of(&start), kAdaptEpochs);
+  EXPECT_EQ(context_epochs_of(&start), 0);
+  EXPECT_EQ(context_epochs_of(nullptr), 0);
+}
+
 }  // namespace
 }  // namespace pcednet::annotate

@@ -64,7 +64,14 @@ test("cuts no number beside the curve of the loss", async () => {
       if (left - (this.textAlign === "right" ? width : 0) < 0) cut.push(text);
       fillText.call(this, text, x, y, ...more);
     };
-    const training = { run: 1, active: false, epochs: 3, epoch: [1, 2, 3], loss: [0.171551, 0.17153, 0.17149] };
+    const training = {
+      run: 1,
+      active: false,
+      epochs: 3,
+      epoch: [1, 2, 3],
+      loss: [0.171551, 0.17153, 0.17149],
+      context: [],
+    };
     annotator.store.set({ training });
     while (!written.includes("3")) await new Promise((done) => setTimeout(done, 20));
     canvas.fillText = fillText;
@@ -142,6 +149,11 @@ test("learns from one stroke, and says that this is too little to tell how right
   await page.getByText("prediction, out of date").waitFor({ state: "detached" });
   await page.getByText("Not enough strokes to tell how right it is").waitFor();
   await settled();
+  // Two networks, two curves: the loss of the second is of other samples.
+  const { epoch, loss, context } = await its.state("training");
+  assert.deepEqual([epoch.length, loss.length, context.length], [30, 30, 30]);
+  loss.forEach((of, k) => assert.deepEqual([of === null, context[k] === null], [k >= 15, k < 15], `epoch ${k + 1}`));
+  await page.locator(".curves").getByText("of the context network").waitFor();
   const now = await predicted();
   before.forEach((share, c) => assert.ok(Math.abs(share - now[c]) < 0.05, `class ${c}: ${share}, then ${now[c]}`));
 });

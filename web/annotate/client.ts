@@ -321,14 +321,15 @@ export class Client {
   private takeTraining(event: TrainingEvent): void {
     const old = this.store.now.training;
     const same = old !== null && old.active && old.run === event.run && event.epoch > (old.epoch.at(-1) ?? 0);
-    const before = same ? old : { epoch: [], loss: [] };
+    const before = same ? old : { epoch: [], loss: [], context: [] };
     this.store.set({
       training: {
         run: event.run,
         active: true,
         epochs: event.epochs,
         epoch: [...before.epoch, event.epoch],
-        loss: [...before.loss, event.loss],
+        loss: [...before.loss, event.context ? null : event.loss],
+        context: [...before.context, event.context ? event.loss : null],
       },
     });
   }

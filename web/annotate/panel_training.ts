@@ -1,5 +1,6 @@
 // Training: what it begins from, how it goes, what it was before.
 
+import { seriesColour } from "../shared/colours";
 import { h } from "../shared/dom";
 import { linePlot } from "../shared/lines";
 import type { Press } from "./chrome";
@@ -13,7 +14,7 @@ import type { Run, Start } from "./types";
 /** What a start is called; a model file without its folder. */
 const startName = (start: Start): string => (start === "random" ? "nothing" : `model ${start.split("/").at(-1)}`);
 
-/** The loss by epoch. */
+/** The loss by epoch: two curves where the context network trains, too, whose loss is of other samples. */
 function curves(store: AppStore): HTMLElement {
   const place = h("div", { class: "curves" });
   let drawn = 0;
@@ -28,7 +29,12 @@ function curves(store: AppStore): HTMLElement {
         height: 104,
         xLabel: "",
         yLabel: "",
-        lines: [{ name: "loss", colour: "#b5342b", y: training.loss }],
+        lines: [
+          { name: "loss", colour: seriesColour(0), y: training.loss },
+          ...(training.context.some((loss) => loss !== null)
+            ? [{ name: "of the context network", colour: seriesColour(1), y: training.context }]
+            : []),
+        ],
       }),
     );
   };

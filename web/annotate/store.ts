@@ -22,7 +22,10 @@ export interface Training {
   active: boolean;
   epochs: number;
   epoch: number[];
+  /** By epoch; null where the context network trains. */
   loss: (number | null)[];
+  /** The same of the context network, which trains last. */
+  context: (number | null)[];
 }
 
 export interface Clip {

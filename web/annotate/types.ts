@@ -149,6 +149,8 @@ export interface TrainingEvent {
   run: number;
   epoch: number;
   epochs: number;
+  /** Of the context network, which trains last. */
+  context: boolean;
   loss: number;
 }
 

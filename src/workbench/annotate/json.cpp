@@ -132,7 +132,11 @@ Json json_of(const Problem& problem) {
 }
 
 Json json_of(const EpochDone& done) {
-  return {{"run", done.run}, {"epoch", done.epoch}, {"epochs", done.epochs}, {"loss", done.loss}};
+  return {{"run", done.run},
+          {"epoch", done.epoch},
+          {"epochs", done.epochs},
+          {"context", done.is_context},
+          {"loss", done.loss}};
 }
 
 Json json_of(const Predicted& predicted) {

@@ -72,7 +72,11 @@ gls::ScaleSpaceOptions descriptor_of(const detect::EdgeModel* start) {
 
 int epochs_of(const Start* start) {
   if (!start) return kEpochs;
-  return start->model.context ? 2 * kAdaptEpochs : kAdaptEpochs;
+  return kAdaptEpochs + context_epochs_of(start);
+}
+
+int context_epochs_of(const Start* start) {
+  return start && start->model.context ? kAdaptEpochs : 0;
 }
 
 Adapted learn(const std::string& name, const Subject& subject, std::span<const std::uint8_t> labels,

@@ -27,8 +27,10 @@ void check_can_learn(std::span<const std::uint8_t> labels, const Settings& setti
 /// The descriptor of a run: that of the model it starts from.
 gls::ScaleSpaceOptions descriptor_of(const detect::EdgeModel* start);
 
-/// The number of epochs that a training reports.
+/// The number of epochs that a training reports, and those of them that are the context network's,
+/// which trains last.
 int epochs_of(const Start* start);
+int context_epochs_of(const Start* start);
 
 /// Trains on the painted points; labels as for adapt(). `start` is null (random weights) or the
 /// model to start from, with_classes() of the settings, which can_start(). Depends only on the

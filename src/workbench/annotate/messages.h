@@ -98,6 +98,7 @@ struct Problem {
 };
 struct EpochDone {
   int run = 0, epoch = 0, epochs = 0;
+  bool is_context = false;  ///< of the context network
   double loss = 0;
 };
 struct Predicted {

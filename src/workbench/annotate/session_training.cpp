@@ -82,9 +82,11 @@ bool Session::State::train(Run& run, std::span<const std::uint8_t> painted_class
   const Progress cancel = {.report = {}, .cancelled = [&] { return is_void(mine); }};
   painted_classes = painted_classes.first(firsts[clouds - 1] + scenes[clouds - 1]->cloud.size());
   const auto on_epoch = [&](const nn::EpochReport& report) {
+    const int epochs = epochs_of(from.get());
     emit(EpochDone{.run = run.record.number,
                    .epoch = report.epoch,
-                   .epochs = epochs_of(from.get()),
+                   .epochs = epochs,
+                   .is_context = report.epoch > epochs - context_epochs_of(from.get()),
                    .loss = report.training_loss});
   };
   Stopwatch watch;
