@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "io/scratch.h"
 #include "support/expect_error.h"
+#include "workbench/annotate/saving.h"
 
 namespace pcednet::annotate {
 namespace {
@@ -59,6 +62,38 @@ TEST(LineReview, KeepsDecisionsOnTheSameLinesInAFile) {
   EXPECT_EQ(kept_decisions(file, others), open);
   std::filesystem::resize_file(file, std::filesystem::file_size(file) - 3);
   EXPECT_EQ(kept_decisions(file, *review.curves), open);
+}
+
+/// Vertices of polylines and circles in a DXF of an upright circle.
+std::pair<std::size_t, std::size_t> drawn(io::DxfArcs arcs, double tolerance) {
+  const io::Scratch scratch;
+  const lines::Curve circle{.kind = lines::CurveKind::kCircle,
+                            .points = {Vec3(1, 0, 0)},
+                            .closed = true,
+                            .axis = Vec3::UnitY(),
+                            .radius = 1.0};
+  const LineReview review{.curves = std::make_shared<std::vector<lines::Curve>>(1, circle),
+                          .decisions = {Decision::kAccepted},
+                          .tolerance = tolerance};
+  const auto file = scratch.path("a.dxf");
+  write_lines(file, review, PointCloud{}, Overwrite::kNo, arcs);
+  std::ifstream text(file);
+  std::pair<std::size_t, std::size_t> found;
+  for (std::string line; text >> line;) {
+    found.first += line == "VERTEX" ? 1 : 0;
+    found.second += line == "CIRCLE" ? 1 : 0;
+  }
+  return found;
+}
+
+TEST(LineReview, WritesArcsAndPolylinesAsTheCommandDoes) {
+  EXPECT_EQ(drawn(io::DxfArcs::kAll, 0.01), std::pair(std::size_t{0}, std::size_t{1}));
+  for (const auto arcs : {io::DxfArcs::kFlat, io::DxfArcs::kNone}) {
+    const auto [vertices, circles] = drawn(arcs, 0.01);
+    EXPECT_EQ(circles, 0u);
+    EXPECT_GT(vertices, 50u);
+    EXPECT_GT(drawn(arcs, 1e-5).first, 5 * vertices) << "the tolerance of the lines is kept";
+  }
 }
 
 }  // namespace

@@ -127,7 +127,9 @@ class AnnotateClouds(AnnotateTest):
             server.post("/api/lines/decide", {"cloud": cloud, "version": 1, "decision": decision,
                                               "lines": [0]})
         self.assertEqual(server.request("/api/download/lines?cloud=1")[0], 409)
-        self.assertEqual(server.request("/api/download/lines")[0], 200)
+        for arcs in ("", "?dxf_arcs=all", "?format=dxf&dxf_arcs=flat", "?dxf_arcs=none"):
+            self.assertEqual(server.request("/api/download/lines" + arcs)[0], 200)
+        self.assertEqual(server.request("/api/download/lines?dxf_arcs=some")[0], 400)
         server.post("/api/lines/find", {"cloud": 1})
         again = server.until("/api/lines?cloud=1", lambda lines: lines["version"] == 2)
         self.assertEqual({line["decision"] for line in again["lines"]}, {"open"})

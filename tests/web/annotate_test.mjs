@@ -577,6 +577,17 @@ test("finds lines, goes through them, and downloads those that are accepted", as
   );
   features.forEach(({ properties }, i) => assert.ok(Math.abs(properties.length - accepted[i].length) < 1e-9));
   assert.match(await download("DXF"), /LINE\r?\n/);
+  for (const [arcs, words] of [
+    ["flat", "for FreeCAD and LibreCAD."],
+    ["none", "DXF has polylines only, for CloudCompare."],
+    ["all", "DXF has all arcs and circles as such."],
+  ]) {
+    await panel.getByRole("radio", { name: arcs, exact: true }).check();
+    await panel.getByText(words).waitFor();
+    const offered = page.waitForEvent("download");
+    await page.getByRole("button", { name: "DXF", exact: true }).click();
+    assert.equal(new URL((await offered).url()).searchParams.get("dxf_arcs"), arcs);
+  }
   assert.match(await download("GeoPackage", "gpkg"), /^SQLite format 3/);
   const drawnLines = (await download("OBJ")).split("\n").filter((line) => line.startsWith("l "));
   assert.equal(drawnLines.length, accepted.length);

@@ -340,11 +340,11 @@ test("preferences come back; what is damaged does not", () => {
   const storage = { getItem: (key) => kept.get(key) ?? null, setItem: (key, value) => kept.set(key, value) };
   const first = new store.Store(store.initialState);
   preferences.keepPreferences(first, () => storage);
-  first.set({ theme: "dark", safePalette: true, pointSize: 3, brush: 4, mode: "normals" });
+  first.set({ theme: "dark", safePalette: true, pointSize: 3, brush: 4, dxfArcs: "none", mode: "normals" });
   const second = new store.Store(store.initialState);
   preferences.keepPreferences(second, () => storage);
-  const { theme, safePalette, pointSize, brush: spacings, mode } = second.now;
-  assert.deepEqual([theme, safePalette, pointSize, spacings, mode], ["dark", true, 3, 4, "labels"]);
+  const { theme, safePalette, pointSize, brush: spacings, dxfArcs, mode } = second.now;
+  assert.deepEqual([theme, safePalette, pointSize, spacings, dxfArcs, mode], ["dark", true, 3, 4, "none", "labels"]);
   assert.deepEqual(preferences.readPreferences("{"), {});
   assert.deepEqual(preferences.readPreferences("null"), {});
   assert.deepEqual(preferences.readPreferences('{"theme":"pink","pointSize":1e9,"brush":2,"toString":1}'), {

@@ -5,9 +5,9 @@ import { h } from "../shared/dom";
 import type { Press } from "./chrome";
 import { refusalOf, type Client } from "./client";
 import { count, length, percent } from "./format";
-import { allow, button, checkbox, section, showOnly } from "./panel";
+import { allow, button, buttons, checkbox, section, showOnly } from "./panel";
 import { countDecisions, type Reviewer } from "./reviewer";
-import type { AppStore } from "./store";
+import type { AppStore, DxfArcs } from "./store";
 import type { Line } from "./types";
 
 const FORMATS: [string, string][] = [
@@ -15,6 +15,16 @@ const FORMATS: [string, string][] = [
   ["obj", "OBJ"],
   ["geojson", "GeoJSON"],
   ["gpkg", "GeoPackage"],
+];
+
+/** What DXF has as arcs and circles, as --dxf-arcs of `pcednet lines` says it. */
+const DXF_ARCS: { value: DxfArcs; words: string }[] = [
+  { value: "all", words: "DXF has all arcs and circles as such." },
+  {
+    value: "flat",
+    words: "DXF has the flat ones (in horizontal planes) as such, the others as polylines, for FreeCAD and LibreCAD.",
+  },
+  { value: "none", words: "DXF has polylines only, for CloudCompare." },
 ];
 
 const plural = (n: number, noun: string): string => `${count(n)} ${noun}${n === 1 ? "" : "s"}`;
@@ -67,8 +77,18 @@ export function linesPanel(store: AppStore, client: Client, reviewer: Reviewer, 
   );
   const download = async (format: string): Promise<void> => {
     await client.lines.settled();
-    client.files.download("lines", `?format=${format}`);
+    client.files.download("lines", `?format=${format}&dxf_arcs=${store.now.dxfArcs}`);
   };
+  const arcs = buttons<DxfArcs>(
+    "DXF arcs",
+    DXF_ARCS.map(({ value }) => ({ value, label: value })),
+    (dxfArcs) => store.set({ dxfArcs }),
+  );
+  const arcsWords = h("p", { class: "summary" });
+  store.watch(["dxfArcs"], () => {
+    arcs.set(store.now.dxfArcs);
+    arcsWords.textContent = DXF_ARCS.find(({ value }) => value === store.now.dxfArcs)!.words;
+  });
   const downloads = FORMATS.map(([format, label]) => button(label, () => void download(format)));
   const review = h(
     "div",
@@ -80,6 +100,8 @@ export function linesPanel(store: AppStore, client: Client, reviewer: Reviewer, 
     h("div", { class: "buttons" }, accept, reject, rest),
     h("p", { class: "summary" }, "Download the accepted lines"),
     h("div", { class: "buttons" }, ...downloads),
+    arcs.element,
+    arcsWords,
   );
   store.watch(["lines", "searchStage", "runs", "predictionVersion", "writer", "connected", "training", "edges"], () => {
     const { lines, runs, edges } = store.now;

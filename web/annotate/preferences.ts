@@ -4,12 +4,13 @@ import type { AppStore, State } from "./store";
 
 const PLACE = "pcednet annotate";
 
-type Preferences = Pick<State, "safePalette" | "theme" | "pointSize" | "brush">;
+type Preferences = Pick<State, "safePalette" | "theme" | "pointSize" | "brush" | "dxfArcs">;
 
 const IS_FIT: { [K in keyof Preferences]: (value: unknown) => boolean } = {
   safePalette: (value) => typeof value === "boolean",
   theme: (value) => ["system", "light", "dark"].includes(value as string),
   pointSize: (value) => typeof value === "number" && value >= 0.3 && value <= 6,
+  dxfArcs: (value) => ["all", "flat", "none"].includes(value as string),
   brush: (value) => typeof value === "number" && value > 0 && value < 1e6,
 };
 const KEYS = Object.keys(IS_FIT) as (keyof Preferences)[];

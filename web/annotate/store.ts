@@ -14,6 +14,9 @@ export type ColourMode =
   | "p_sharp"
   | "feature";
 
+/** Which arcs and circles are such in DXF; the others are polylines. */
+export type DxfArcs = "all" | "flat" | "none";
+
 export type Theme = "system" | "light" | "dark";
 
 /** The curves of the run that is under way or was last. */
@@ -94,6 +97,7 @@ export interface State {
   /** The number of the line that is looked at. */
   line: number | null;
   showLines: boolean;
+  dxfArcs: DxfArcs;
   /** How far the search for lines is, in words. */
   searchStage: string;
 }
@@ -144,6 +148,7 @@ export const initialState: State = {
   lines: { version: 0, prediction_version: 0, searching: false, cloud: 0, lines: [] },
   line: null,
   showLines: true,
+  dxfArcs: "all",
   searchStage: "",
 };
 

@@ -22,6 +22,7 @@ struct LineReview {
   bool is_searching = false;
   std::shared_ptr<const std::vector<lines::Curve>> curves = {};  ///< null before the first time
   std::vector<Decision> decisions = {};                          ///< one per curve
+  double tolerance = 0.0;  ///< how far their points may be from the curves
 };
 
 /// A request to decide on lines of a version, or its outcome.

@@ -154,6 +154,16 @@ std::string wanted_name(const Call& call, const std::filesystem::path& usual) {
   return format.empty() ? "" : usual.stem().string() + "." + format;
 }
 
+/// By their names in --dxf-arcs; all if none is named.
+io::DxfArcs wanted_arcs(const Call& call) {
+  const std::string name = asked(call, "dxf_arcs");
+  if (name.empty()) return io::DxfArcs::kAll;
+  for (const auto& [known, arcs] : io::kDxfArcs) {
+    if (name == known) return arcs;
+  }
+  throw Error(ErrorKind::kUsage, "dxf_arcs: all, flat or none");
+}
+
 Response get_lines(const Call& call) {
   return json_response(to_json(call.session.lines(cloud_of(call))));
 }
@@ -172,7 +182,7 @@ Response get_download(const Call& call) {
     std::filesystem::remove_all(folder, error);
   });
   const auto file = std::filesystem::path(folder) / target.filename();
-  call.session.save(what, file, Overwrite::kNo, cloud);
+  call.session.save(what, file, Overwrite::kNo, cloud, wanted_arcs(call));
   std::ifstream stream(file, std::ios::binary);
   return binary(std::string(std::istreambuf_iterator<char>(stream), {}),
                 {{"Content-Disposition", attachment(target.filename().string())}});

@@ -8,7 +8,6 @@
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/detect/result_truth.h"
 #include "pcednet/formats/format.h"
-#include "pcednet/io/drawing/drawing.h"
 #include "pcednet/io/las/las.h"
 #include "workbench/annotate/outputs.h"
 #include "workbench/annotate/painting.h"
@@ -102,11 +101,13 @@ fs::path saving_path(Saved what, const std::string& name, std::span<const fs::pa
   return path;
 }
 
-void write_lines(const std::filesystem::path& path, std::span<const lines::Curve> curves,
-                 const PointCloud& cloud, Overwrite overwrite) {
-  io::write_drawing(
-      path, curves,
-      {.overwrite = overwrite, .coordinate_system = io::las_coordinate_system(cloud)});
+void write_lines(const std::filesystem::path& path, const LineReview& review,
+                 const PointCloud& cloud, Overwrite overwrite, io::DxfArcs arcs) {
+  io::write_drawing(path, accepted_curves(review),
+                    {.overwrite = overwrite,
+                     .fit_tolerance = review.tolerance,
+                     .dxf_arcs = arcs,
+                     .coordinate_system = io::las_coordinate_system(cloud)});
 }
 
 PointCloud saved_cloud(const Scene& scene, const std::vector<std::uint8_t>& labels,

@@ -4,7 +4,8 @@
 #include <span>
 #include <string>
 
-#include "pcednet/lines/curve.h"
+#include "pcednet/io/drawing/drawing.h"
+#include "workbench/annotate/line_review.h"
 #include "workbench/annotate/scene.h"
 
 namespace pcednet::annotate {
@@ -23,9 +24,10 @@ std::filesystem::path saving_path(Saved what, const std::string& name,
                                   const std::filesystem::path& project,
                                   std::span<const std::filesystem::path> starts = {});
 
-/// Writes curves found in a cloud, with its coordinate system.
-void write_lines(const std::filesystem::path& path, std::span<const lines::Curve> curves,
-                 const PointCloud& cloud, Overwrite overwrite);
+/// Writes the accepted lines of a cloud as `pcednet lines` does, with its coordinate system; `arcs`
+/// is for DXF. Throws Error(kInsufficient) as accepted_curves().
+void write_lines(const std::filesystem::path& path, const LineReview& review,
+                 const PointCloud& cloud, Overwrite overwrite, io::DxfArcs arcs);
 
 /// The cloud to save: with its painted labels and, if there is one, the prediction. Own classes go
 /// into its comments.

@@ -316,8 +316,8 @@ fs::path Session::target(Saved what, const std::string& name, std::size_t cloud)
   return saving_path(what, name, inputs, cloud, state_->options.project, state_->starts_in_use());
 }
 
-FileSaved Session::save(Saved what, const fs::path& path, Overwrite overwrite,
-                        std::size_t cloud) const {
+FileSaved Session::save(Saved what, const fs::path& path, Overwrite overwrite, std::size_t cloud,
+                        io::DxfArcs arcs) const {
   Lock lock(state_->mutex);
   const State& s = *state_;
   s.check_cloud(cloud);
@@ -329,9 +329,9 @@ FileSaved Session::save(Saved what, const fs::path& path, Overwrite overwrite,
     return {path.string(), fs::file_size(path)};
   }
   if (what == Saved::kLines) {
-    const auto accepted = accepted_curves(s.reviews[cloud]);
+    const LineReview review = s.reviews[cloud];
     lock.unlock();
-    write_lines(path, accepted, scene->cloud, overwrite);
+    write_lines(path, review, scene->cloud, overwrite, arcs);
     return {path.string(), fs::file_size(path)};
   }
   const auto prediction = s.runs.settled_prediction(cloud);

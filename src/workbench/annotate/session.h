@@ -95,9 +95,9 @@ class Session {
   std::filesystem::path target(Saved what, const std::string& name, std::size_t cloud = 0) const;
 
   /// Writes `what` to `path`; of several clouds, the one of `cloud`. A model is that of the shown
-  /// run, which the answer compares with the strokes.
+  /// run, which the answer compares with the strokes. `arcs` is for lines in DXF.
   FileSaved save(Saved what, const std::filesystem::path& path, Overwrite overwrite,
-                 std::size_t cloud = 0) const;
+                 std::size_t cloud = 0, io::DxfArcs arcs = io::DxfArcs::kAll) const;
 
   const SessionOptions& options() const;
 

@@ -246,6 +246,7 @@ void Session::State::find_lines_once(std::size_t cloud, bool boundaries, std::ui
     }
     const auto scanners =
         boundaries ? scanner_of_points(scenes[cloud]->cloud) : std::vector<Vec3>{};
+    lines::LineScale scale;
     auto curves = std::make_shared<std::vector<lines::Curve>>(
         lines::find_lines({.positions = prepared.positions,
                            .normals = prepared.normals,
@@ -254,7 +255,7 @@ void Session::State::find_lines_once(std::size_t cloud, bool boundaries, std::ui
                            .p_smooth = prediction->result.p_smooth,
                            .scanners = scanners,
                            .curve = prepared.curve},
-                          {.boundaries = boundaries}, &reporter));
+                          {.boundaries = boundaries}, &reporter, &scale));
     const Lock lock(mutex);
     if (orders.generation != mine || orders.stopping) return;
     LineReview& review = reviews[cloud];
@@ -263,6 +264,7 @@ void Session::State::find_lines_once(std::size_t cloud, bool boundaries, std::ui
     if (review.version > 0) std::filesystem::remove(kept, ignored);  // the user begins afresh
     review.decisions = kept_decisions(kept, *curves);
     review.curves = std::move(curves);
+    review.tolerance = scale.tolerance;
     review.prediction_version = version;
     ++review.version;
     set_searching(cloud, orders.find_lines.contains(cloud));
