@@ -80,6 +80,22 @@ test("shows the classes of LAS by their names, fetched only when asked for", asy
   assert.ok(brown > 0.3 && orange > 0.1, `${brown} ground, ${orange} buildings`);
 });
 
+test("shows no class before it is known, however slow the network", async () => {
+  const grey = () => shareOf("b > 1.04 * r && b < 1.3 * r"); // as what has no label; non-edge is white
+  await page.reload();
+  await settled();
+  let release;
+  const released = new Promise((done) => (release = done));
+  await page.route("**/api/values?of=file_labels*", (route) => released.then(() => route.continue()));
+  await colourBy("labels of the file");
+  await page.waitForTimeout(300);
+  assert.ok((await grey()) > 0.95, `${await grey()}`);
+  release();
+  await settled();
+  assert.ok((await grey()) < 0.1, `${await grey()}`);
+  await page.unroute("**/api/values?of=file_labels*");
+});
+
 test("shows the labels of the file in the colours of the classes", async () => {
   await colourBy("labels of the file");
   await settled();
@@ -96,7 +112,7 @@ test("paints what is unpainted as in the file, within the clipping box, a class 
   await paint(2, [[1, 0, 0.3]], 0.1); // on a face
   const wrong = (await state("counts"))[2];
   assert.ok(wrong > 20);
-  const take = page.getByRole("button", { name: "Paint as in the file" });
+  const take = page.getByRole("button", { name: "As in the file" });
   await page.evaluate(() => {
     const { min, max } = structuredClone(annotator.store.now.session.bounds);
     max[0] = 0;

@@ -17,8 +17,9 @@ export interface Chunk {
   confirmed: Uint8Array;
   /** Predicted class a point; 255 none. */
   prediction: Uint8Array;
-  /** What a ramp colours, a byte a point. */
+  /** What a ramp colours, a byte a point, and what it is, as "confidence"; null before it is here. */
   values: Uint8Array;
+  valuesOf: string | null;
 }
 
 /** Which points count as visible. */
@@ -43,6 +44,7 @@ export function decodeChunk(info: NodeInfo, bytes: ArrayBuffer, hasColours: bool
     confirmed: new Uint8Array(n).fill(NO_CLASS),
     prediction: new Uint8Array(n).fill(NO_CLASS),
     values: new Uint8Array(n),
+    valuesOf: null,
   };
 }
 

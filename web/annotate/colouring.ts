@@ -3,6 +3,7 @@
 import { PLAIN, type Stroke } from "../shared/line_layer";
 import { NONE, paletteOf } from "./classes";
 import { classBytes, fileLabels, lasClasses, type ShownClass } from "./file_classes";
+import { kindOf } from "./loader";
 import type { Appearance } from "./painter";
 import { rampBytes, STOPS, type RampName } from "./ramp";
 import { activeClip, type ColourMode, type State } from "./store";
@@ -49,6 +50,7 @@ export function appearanceOf(state: State, background: string): Appearance {
   const ofFile = fileClassesOf(state);
   return {
     mode: mode === "rgb" || mode === "normals" || mode === "labels" || mode === "prediction" ? mode : "ramp",
+    values: kindOf(valuesQuery(state)),
     paintOnTop: state.paintOnTop,
     palette: paletteOf(state).map((meaning) => meaning.colour),
     ramp: ofFile.length > 0 ? classBytes(ofFile) : rampBytes(rampOf(state)),

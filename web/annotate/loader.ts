@@ -5,6 +5,9 @@ import { decodeChunk, type Chunk } from "./chunk";
 import type { Layer } from "./painter";
 import type { NodeInfo } from "./types";
 
+/** What the values of a query are, without the scale and the like: those of another scale show until the new are here. */
+export const kindOf = (query: string | null): string | null => new URLSearchParams(query ?? "").get("of");
+
 const AT_ONCE = 4;
 const BATCH_POINTS = 2_000_000;
 
@@ -98,6 +101,7 @@ export class Loader {
         if (bytes.length !== info.points) return;
         chunk[layer].set(bytes);
         if (layer === "labels") chunk.confirmed.set(bytes);
+        if (layer === "values") chunk.valuesOf = kindOf(asked);
       }),
     );
     if (nodes !== this.nodes) return; // of a cloud that is not looked at any more
@@ -191,7 +195,9 @@ export class Loader {
       const old = chunk[layer];
       if (now.length !== old.length) throw new Error(`node ${chunk.info.id}: ${now.length} values, not ${old.length}`);
       if (layer === "labels") chunk.confirmed.set(now);
-      if (now.every((value, i) => value === old[i])) continue;
+      const isNew = layer === "values" && chunk.valuesOf !== kindOf(this.valuesOf);
+      if (isNew) chunk.valuesOf = kindOf(this.valuesOf);
+      if (!isNew && now.every((value, i) => value === old[i])) continue;
       old.set(now);
       changed.push(chunk.info.id);
     }

@@ -26,6 +26,8 @@ export type Layer = "labels" | "prediction" | "values";
 /** What the shader needs to know besides the points. */
 export interface Appearance {
   mode: "labels" | "rgb" | "normals" | "prediction" | "ramp";
+  /** What the ramp colours; a chunk whose values are something else has no colour yet. */
+  values: string | null;
   paintOnTop: boolean;
   /** By class, and NONE. */
   palette: string[];
@@ -38,7 +40,7 @@ export interface Appearance {
   eyeDome: boolean;
 }
 
-const MODES = ["labels", "rgb", "normals", "prediction", "ramp"];
+const MODES = ["labels", "rgb", "normals", "prediction", "ramp", "none"];
 const ATTRIBUTE: Record<Layer, string> = { labels: "label", prediction: "said", values: "value" };
 
 /** Is WebGL drawn by the processor here? */
@@ -62,6 +64,7 @@ export class Painter {
   private readonly material: ShaderMaterial;
   private readonly ramp = new DataTexture(new Uint8Array(1024), 256, 1);
   private spacings = new Map<number, Float32Array>();
+  private look!: Appearance;
   private fresh = false;
   private size: [number, number] = [1, 1];
 
@@ -104,7 +107,7 @@ export class Painter {
 
   setAppearance(look: Appearance): void {
     const u = this.material.uniforms;
-    u.mode.value = MODES.indexOf(look.mode);
+    this.look = look;
     u.paint.value = look.paintOnTop;
     look.palette.forEach((colour, i) => u.palette.value[i].set(...rgbOf(colour)));
     (this.ramp.image.data as Uint8Array).set(look.ramp);
@@ -187,6 +190,9 @@ export class Painter {
     object.scale.setScalar(2 * half);
     object.updateMatrixWorld(true);
     object.onBeforeRender = () => {
+      const { mode, values } = this.look;
+      const isMissing = mode === "ramp" && chunk.valuesOf !== values;
+      this.material.uniforms.mode.value = MODES.indexOf(isMissing ? "none" : mode);
       this.material.uniforms.spacings.value =
         this.spacings.get(chunk.info.id) ?? new Float32Array(8).fill(chunk.info.spacing);
       this.material.uniformsNeedUpdate = true;

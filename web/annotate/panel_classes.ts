@@ -95,7 +95,7 @@ export function classesPanel(store: AppStore, brush: Brush, edit: () => void, ta
   });
   const change = button("Classes…", edit, "⇧E");
   change.title = "Add, rename, recolour or remove classes (Shift+E)";
-  const take = button("Paint as in the file", takeFileLabels);
+  const take = button("As in the file", takeFileLabels);
   take.title = "Paint every unpainted point with its class in the file, within the clipping box if it is in use";
   store.watch(["writer", "connected"], () => {
     change.disabled = refusalOf(store.now) !== "";

@@ -8,7 +8,7 @@ attribute vec3 rgb;
 attribute float label;
 attribute float said;
 attribute float value;
-uniform int mode;         // 0 labels, 1 rgb, 2 normals, 3 prediction, 4 ramp
+uniform int mode;         // 0 labels, 1 rgb, 2 normals, 3 prediction, 4 ramp, 5 none
 uniform bool paint;       // painted points over everything
 uniform vec3 palette[9];  // by class, and none
 uniform sampler2D ramp;
