@@ -68,6 +68,17 @@ class AnnotateSession(AnnotateTest):
         self.assertEqual(server.post("/api/stroke", brush("edge", 2, EDGE))["undo"], 2)
         self.assertEqual(server.post("/api/undo")["counts"][0], 0)
 
+    def test_a_cloud_of_no_painted_points_lacks_no_stroke(self):
+        server = self.serve("--model", "scan")
+        server.open()
+        server.post("/api/settings", {"auto": False})
+        server.until("/api/runs", lambda runs: len(runs) == 1)
+        save = {"what": "cloud", "overwrite": True}
+        server.post("/api/stroke", brush("a", 2, EDGE))
+        self.assertEqual(server.post("/api/save", save)["strokes_left_out"], 1)
+        server.post("/api/stroke", brush("b", 255, EDGE))
+        self.assertEqual(server.post("/api/save", save)["strokes_left_out"], 0)
+
     def test_refuses_a_journal_of_another_cloud(self):
         server = self.quiet()
         server.post("/api/stroke", brush("a", 2, EDGE))

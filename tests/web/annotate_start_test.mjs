@@ -66,7 +66,7 @@ test("cuts no number beside the curve of the loss", async () => {
     };
     const training = {
       run: 1,
-      active: false,
+      active: true,
       epochs: 3,
       epoch: [1, 2, 3],
       loss: [0.171551, 0.17153, 0.17149],
@@ -75,9 +75,12 @@ test("cuts no number beside the curve of the loss", async () => {
     annotator.store.set({ training });
     while (!written.includes("3")) await new Promise((done) => setTimeout(done, 20));
     canvas.fillText = fillText;
-    annotator.store.set({ training: null });
+    annotator.store.set({ training: { ...training, active: false } });
     return { written, cut };
   });
+  // What is shown is what the start finds: no training has made it.
+  await page.locator(".curves").waitFor({ state: "hidden" });
+  await page.evaluate(() => annotator.store.set({ training: null }));
   assert.ok(
     written.some((text) => /^0\.171\d+$/.test(text)),
     `${written}`,
@@ -132,8 +135,10 @@ test("shows another model's answer as soon as it is chosen, without a stroke", a
   const start = page.getByRole("combobox", { name: "Start from" });
   await start.selectOption({ label: "model worn" });
   await page.getByText("This is what model worn finds.").waitFor();
+  await page.locator(".notice", { hasText: "Model worn knows no smooth edges: it learns two classes." }).waitFor();
   await start.selectOption({ label: "model scan" });
   await page.getByText("This is what model scan finds.").waitFor();
+  assert.equal((await its.state("settings")).classes, 3, "as before the model of two");
 });
 
 test("learns from one stroke, and says that this is too little to tell how right it is", async () => {

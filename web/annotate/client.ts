@@ -56,6 +56,8 @@ export class Client {
   private heard = 0;
   /** Events were not heard for a while. */
   private missed = false;
+  /** As the user chose, whatever starts were chosen since: one that knows no smooth edges learns two. */
+  private wishedClasses: 2 | 3 | null = null;
   /** The start whose description the session told of. */
   private described = "";
   /** The last look at the session, done or not. */
@@ -394,7 +396,8 @@ export class Client {
 
   setSettings(changes: Partial<Settings>): void {
     const before = this.store.now.settings;
-    const wanted = { ...before, ...changes };
+    this.wishedClasses = changes.classes ?? this.wishedClasses ?? before.classes;
+    const wanted = { ...before, ...(changes.start ? { classes: this.wishedClasses } : {}), ...changes };
     this.store.set({ settings: wanted });
     this.attempt(
       this.api
@@ -402,7 +405,7 @@ export class Client {
         .then((settings) => {
           ++this.heard;
           this.store.set({ settings });
-          if (changes.classes && settings.classes !== changes.classes) {
+          if (settings.classes < wanted.classes) {
             this.words.say(`Model ${settings.start} knows no smooth edges: it learns two classes.`);
           }
         })

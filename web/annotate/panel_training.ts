@@ -20,8 +20,9 @@ function curves(store: AppStore): HTMLElement {
   let drawn = 0;
   const draw = (): void => {
     drawn = 0;
-    const { training } = store.now;
-    place.hidden = !training || training.epoch.length < 2;
+    const { training, runs } = store.now;
+    const isOfStart = runs.some((run) => run.current && run.run === 0); // which no training shown here made
+    place.hidden = !training || training.epoch.length < 2 || (isOfStart && !training.active);
     if (place.hidden || !training) return;
     place.replaceChildren(
       linePlot({
@@ -38,7 +39,7 @@ function curves(store: AppStore): HTMLElement {
       }),
     );
   };
-  store.watch(["training"], () => {
+  store.watch(["training", "runs"], () => {
     if (!drawn) drawn = window.setTimeout(draw, 100);
   });
   return place;

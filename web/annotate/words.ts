@@ -106,19 +106,18 @@ const list = (title: string, rows: [string[], string][], kind = "keys"): HTMLEle
 /** What each key and button does now. */
 function lists(commands: Command[]): HTMLElement[] {
   const groups = [...new Set(commands.map((command) => command.group))];
-  return [
-    ...groups.map((group) =>
-      list(
-        group,
-        commands.filter((c) => c.group === group && c.name).map((c) => [c.keys, c.name]),
-      ),
-    ),
+  const keys = groups.map((group) =>
     list(
-      "Mouse and fingers",
-      MOUSE.map(([key, name]) => [[key], name]),
-      "described",
+      group,
+      commands.filter((c) => c.group === group && c.name).map((c) => [c.keys, c.name]),
     ),
-  ];
+  );
+  const hands = list(
+    "Mouse and fingers",
+    MOUSE.map(([key, name]) => [[key], name]),
+    "described",
+  );
+  return matchMedia("(pointer: coarse)").matches ? [hands, ...keys] : [...keys, hands];
 }
 
 /** The help, and what opens it. */

@@ -336,7 +336,7 @@ FileSaved Session::save(Saved what, const fs::path& path, Overwrite overwrite, s
   }
   const auto prediction = s.runs.settled_prediction(cloud);
   const std::size_t left_out =
-      prediction ? s.painting->strokes_since(s.runs.shown()->record.records) : 0;
+      s.is_out_of_date() ? s.painting->strokes_since(s.runs.shown()->record.records) : 0;
   const auto its = s.part(s.painting->labels().classes(), cloud);
   const ProjectClasses classes = s.painting->classes();
   const std::vector<std::uint8_t> labels(its.begin(), its.end());
