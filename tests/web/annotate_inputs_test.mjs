@@ -172,6 +172,10 @@ test("a notice on a phone leaves the cloud in sight, and a tap removes it", asyn
   assert.ok(height < 0.14 * view.height, `${height} of ${view.height}`);
   const tops = await phone.locator("header .saves > *").evaluateAll((all) => all.map((one) => one.offsetTop));
   assert.ok(Math.max(...tops) - Math.min(...tops) < 5, `all that saves in one row: ${tops}`);
+  await phone.setViewportSize({ width: 740, height: 360 });
+  const [across, last] = [await notice.boundingBox(), await phone.getByRole("button", { name: "Keys" }).boundingBox()];
+  assert.ok(across.height < 45, `${across.height} of a phone on its side`);
+  assert.ok(last.y + last.height <= 360, "all tools are in sight");
   await notice.tap({ position: { x: 20, y: 10 } });
   assert.equal(await notice.count(), 0);
   await phone.close();
