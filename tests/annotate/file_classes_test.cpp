@@ -83,5 +83,14 @@ TEST(FileClasses, OfLasHaveTheNamesOfTheStandard) {
             (Names{"2 ground", "6 building", "22 temporal exclusion", "class 70"}));
 }
 
+TEST(FileClasses, TellTheErrorsOfAPrediction) {
+  EXPECT_EQ(error_of(kNonEdge, kSmoothEdge), 0);
+  EXPECT_EQ(error_of(kSharpEdge, kSharpEdge), 1);
+  EXPECT_EQ(error_of(kSharpEdge, kBoundary), 2);
+  EXPECT_EQ(error_of(kSmoothEdge, kSharpEdge), 3);
+  EXPECT_EQ(error_of(kUnlabelled, kSharpEdge), kUnlabelled);
+  EXPECT_EQ(error_of(kSharpEdge, kUnlabelled), kUnlabelled);
+}
+
 }  // namespace
 }  // namespace pcednet::annotate

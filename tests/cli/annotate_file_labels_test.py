@@ -77,7 +77,7 @@ class AnnotateFileLabels(AnnotateTest):
         server = self.quiet()
         session = server.get("/api/session")
         self.assertEqual([session["file_labels"], session["las_classes"]], [[], []])
-        for of in ("file_labels", "las_classes"):
+        for of in ("file_labels", "las_classes", "errors"):
             self.assertEqual(server.request(f"/api/values?of={of}&nodes=0")[0], 404)
 
 

@@ -106,6 +106,25 @@ test("shows the labels of the file in the colours of the classes", async () => {
   assert.ok(red > 0.02 && red < 0.4, `${red}`);
 });
 
+test("compares the prediction with the labels of the file", async () => {
+  await colourBy("errors of prediction");
+  await settled();
+  assert.match(
+    await legend(),
+    /errors of prediction\s+true negative\s+true positive\s+false positive\s+false negative\s+no label$/,
+  );
+  const { 1: tp = 0, 2: fp = 0, 3: fn = 0 } = await counted("values");
+  const predicted = await counted("prediction");
+  const labels = Object.fromEntries((await state("session")).file_labels.map(({ id, points }) => [id, points]));
+  assert.equal(tp + fp, predicted[2]);
+  assert.equal(tp + fn, labels[2]);
+  assert.ok(tp > 100 && fn > 100, `${[tp, fp, fn]}`);
+  const blue = await shareOf("b > 1.5 * r && b > 80");
+  assert.ok(blue > 0.01 && blue < 0.3, `${blue} of false negatives`);
+  await colourBy("labels of the file");
+  await settled();
+});
+
 test("paints what is unpainted as in the file, within the clipping box, a class at a time", async () => {
   const all = await counted("values");
   await its.trainAfterStrokes(false);

@@ -106,9 +106,9 @@ export function header(store: AppStore, save: (what: Saved) => void, client: Cli
 function meaningsOf(state: State): Meaning[] {
   const { mode, edges } = state;
   const palette = paletteOf(state);
-  if (mode === "file" || mode === "las") {
-    const shown = fileClassesOf(state);
-    const all = shown.reduce((sum, { points }) => sum + points, 0);
+  const shown = fileClassesOf(state);
+  if (shown.length > 0) {
+    const all = shown.reduce((sum, { points = 0 }) => sum + points, 0);
     return all === state.session?.points ? shown : [...shown, palette[NONE]];
   }
   if (mode !== "labels" && mode !== "prediction") return [];

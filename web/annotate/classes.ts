@@ -6,7 +6,7 @@ import { NO_CLASS, type ClassInfo, type Vec3 } from "./types";
 
 export const MOST_CLASSES = 8;
 
-const SHARP_EDGE = 2;
+export const SHARP_EDGE = 2;
 
 /** What stands for no class in a palette. */
 export const NONE = MOST_CLASSES;

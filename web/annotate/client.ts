@@ -348,7 +348,7 @@ export class Client {
       outOfDate: event.out_of_date,
     });
     this.stage.loader.refresh("prediction");
-    if (["confidence", "p_sharp"].includes(store.now.mode)) this.stage.loader.refresh("values");
+    if (["errors", "confidence", "p_sharp"].includes(store.now.mode)) this.stage.loader.refresh("values");
     if (first && ["labels", "rgb"].includes(store.now.mode)) store.set({ mode: "prediction" });
     if (store.now.settings.start === this.described) await this.refreshRuns();
     else await this.refresh(); // other scales

@@ -2,7 +2,7 @@
 
 import { PLAIN, type Stroke } from "../shared/line_layer";
 import { NONE, paletteOf } from "./classes";
-import { classBytes, fileLabels, lasClasses, type ShownClass } from "./file_classes";
+import { classBytes, errorClasses, fileLabels, lasClasses, type ShownClass } from "./file_classes";
 import { kindOf } from "./loader";
 import type { Appearance } from "./painter";
 import { rampBytes, STOPS, type RampName } from "./ramp";
@@ -26,6 +26,7 @@ export const FEATURE_NAMES: Record<string, string> = {
 /** The classes of the file that a mode shows; none in another mode. */
 export function fileClassesOf(state: State): ShownClass[] {
   if (state.mode === "file") return fileLabels(state);
+  if (state.mode === "errors") return errorClasses;
   return state.mode === "las" ? lasClasses(state) : [];
 }
 
@@ -42,6 +43,7 @@ export function valuesQuery({ mode, feature, scale }: State): string | null {
   if (mode === "feature") return `of=feature&feature=${feature}&scale=${scale}`;
   if (mode === "file") return "of=file_labels";
   if (mode === "las") return "of=las_classes";
+  if (mode === "errors") return "of=errors";
   return isRamp(mode) ? `of=${mode}` : null;
 }
 

@@ -1,6 +1,7 @@
 // Everything the page can do, each with a name and keys; the help is made of this list.
 
 import type { Brush } from "./brush";
+import { hasErrors } from "./file_classes";
 import { isOff, MOST_CLASSES, paintable, paletteOf } from "./classes";
 import type { Client } from "./client";
 import type { Outline } from "./outline";
@@ -47,13 +48,14 @@ export const MODES: { mode: ColourMode; name: string }[] = [
   { mode: "las", name: "LAS classes" },
   { mode: "labels", name: "painted labels" },
   { mode: "prediction", name: "prediction" },
+  { mode: "errors", name: "errors of prediction" },
   { mode: "confidence", name: "confidence" },
   { mode: "p_sharp", name: "probability of a sharp edge" },
   { mode: "feature", name: "feature" },
 ];
 
 /** Those that show a prediction. */
-export const PREDICTED: ColourMode[] = ["prediction", "confidence", "p_sharp"];
+export const PREDICTED: ColourMode[] = ["prediction", "errors", "confidence", "p_sharp"];
 
 /** The modes that this cloud has. */
 export function modesOf({ now }: Pick<AppStore, "now">): ColourMode[] {
@@ -61,6 +63,7 @@ export function modesOf({ now }: Pick<AppStore, "now">): ColourMode[] {
     (mode) =>
       (mode !== "rgb" || now.session?.has_colours) &&
       (mode !== "file" || (now.session?.file_labels ?? []).length > 0) &&
+      (mode !== "errors" || hasErrors(now)) &&
       (mode !== "las" || (now.session?.las_classes ?? []).length > 0) &&
       (mode !== "p_sharp" || now.edges) &&
       (now.hasPrediction || !PREDICTED.includes(mode)),

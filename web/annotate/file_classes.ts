@@ -1,7 +1,7 @@
 // The classes that the file gives its points: what they are called, their colours, and strokes that paint them.
 
-import { NO_LABEL, CLASS_PALETTES, rgbOf } from "../shared/colours";
-import { classNames, hexOf, paintable, paletteOf } from "./classes";
+import { CLASS_PALETTES, ERROR_PALETTE, NO_LABEL, rgbOf } from "../shared/colours";
+import { classNames, hexOf, paintable, paletteOf, SHARP_EDGE } from "./classes";
 import { activeClip, type State } from "./store";
 import type { FileClass, FileStroke } from "./types";
 
@@ -11,7 +11,8 @@ export interface ShownClass {
   id: number;
   name: string;
   colour: string;
-  points: number;
+  /** Left out where it depends on the prediction. */
+  points?: number;
 }
 
 /** Whether it is a class of the project, too. */
@@ -29,6 +30,13 @@ export function fileLabels(state: Known): ShownClass[] {
 
 export const lasClasses = ({ session }: Pick<State, "session">): ShownClass[] =>
   (session?.las_classes ?? []).map((one) => ({ ...one, colour: hexOf(one.colour) }));
+
+/** Whether sharp edges that are predicted can be compared with those of the file. */
+export const hasErrors = ({ session, classes, edges }: Pick<State, "session" | "classes" | "edges">): boolean =>
+  edges && (session?.file_labels ?? []).some((one) => one.id === SHARP_EDGE && isProjects(one, { classes, edges }));
+
+/** What can be said of a prediction of sharp edges, as the report colours it. */
+export const errorClasses: ShownClass[] = ERROR_PALETTE.slice(0, 4).map((meaning, id) => ({ id, ...meaning }));
 
 /** For each byte of a value its colour, as a ramp has it. */
 export function classBytes(shown: ShownClass[]): Uint8Array {

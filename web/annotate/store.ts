@@ -8,6 +8,7 @@ export type ColourMode =
   | "normals"
   | "file"
   | "las"
+  | "errors"
   | "labels"
   | "prediction"
   | "confidence"

@@ -113,4 +113,11 @@ FileClasses las_classes(const PointCloud& cloud) {
   return found.classes.size() < 2 ? FileClasses{} : found;
 }
 
+std::uint8_t error_of(std::uint8_t predicted, std::uint8_t label) {
+  if (predicted == kUnlabelled || label == kUnlabelled) return kUnlabelled;
+  const bool found = predicted == kSharpEdge, is = label == kSharpEdge;
+  if (found) return is ? 1 : 2;
+  return is ? 3 : 0;
+}
+
 }  // namespace pcednet::annotate

@@ -31,4 +31,8 @@ FileClasses file_labels(const PointCloud& cloud, const std::filesystem::path& fi
 /// such as "2 ground". None if it has fewer than two classes.
 FileClasses las_classes(const PointCloud& cloud);
 
+/// A prediction of sharp-edge compared with a label: 0 true negative, 1 true positive, 2 false
+/// positive, 3 false negative; kUnlabelled if one of the two is.
+std::uint8_t error_of(std::uint8_t predicted, std::uint8_t label);
+
 }  // namespace pcednet::annotate

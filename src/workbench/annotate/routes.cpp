@@ -77,8 +77,10 @@ Shown shown_of(const std::string& of) {
   if (of == "feature") return Shown::kFeature;
   if (of == "file_labels") return Shown::kFileLabels;
   if (of == "las_classes") return Shown::kLasClasses;
+  if (of == "errors") return Shown::kErrors;
   throw Error(ErrorKind::kUsage,
-              "of: labels, prediction, confidence, p_sharp, feature, file_labels or las_classes");
+              "of: labels, prediction, confidence, p_sharp, feature, file_labels, las_classes "
+              "or errors");
 }
 
 /// A header that offers a file. The input's name, of which `name` is made, may hold any bytes.

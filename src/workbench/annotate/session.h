@@ -33,7 +33,17 @@ struct SessionOptions {
   std::function<void(const Event& event)> emit = {};
 };
 
-enum class Shown { kLabels, kPrediction, kConfidence, kPSharp, kFeature, kFileLabels, kLasClasses };
+/// kErrors compares the prediction with the labels of the file, see error_of().
+enum class Shown {
+  kLabels,
+  kPrediction,
+  kConfidence,
+  kPSharp,
+  kFeature,
+  kFileLabels,
+  kLasClasses,
+  kErrors
+};
 
 /// A running annotation of one or several clouds: loading, painting, training, saving. Loading and
 /// training run on a separate thread; every function may be called from any thread. The journal is

@@ -90,9 +90,14 @@ std::vector<std::uint32_t> Session::State::points_of(const std::vector<std::size
 
 namespace {
 
-/// The class of each of the points; throws NotFound if the input has none.
-std::vector<std::uint8_t> bytes_at(const FileClasses& of, std::span<const std::uint32_t> points) {
+/// Throws NotFound if the input has none.
+void check_given(const FileClasses& of) {
   if (of.ids.empty()) throw NotFound("the file has no such classes");
+}
+
+/// The class of each of the points. Throws as check_given().
+std::vector<std::uint8_t> bytes_at(const FileClasses& of, std::span<const std::uint32_t> points) {
+  check_given(of);
   std::vector<std::uint8_t> bytes;
   bytes.reserve(points.size());
   for (const std::uint32_t point : points) bytes.push_back(of.ids[point]);
@@ -110,16 +115,18 @@ Session::Values Session::values(Shown what, const std::vector<std::size_t>& node
   if (what == Shown::kFeature) {
     return {feature_bytes(*s.described[cloud], points, feature, scale), 0};
   }
-  if (what == Shown::kFileLabels || what == Shown::kLasClasses) {
-    const Scene& scene = *s.scenes[cloud];
-    return {bytes_at(what == Shown::kFileLabels ? scene.labels : scene.las_classes, points), 0};
-  }
+  const Scene& scene = *s.scenes[cloud];
+  if (what == Shown::kFileLabels) return {bytes_at(scene.labels, points), 0};
+  if (what == Shown::kLasClasses) return {bytes_at(scene.las_classes, points), 0};
+  if (what == Shown::kErrors) check_given(scene.labels);
   const auto prediction = s.runs.prediction(cloud);
   const auto labels = s.part(s.painting->labels().classes(), cloud);
   const auto value = [&](std::uint32_t i) -> std::uint8_t {
     if (what == Shown::kLabels) return labels[i];
-    if (what == Shown::kPrediction)
-      return prediction ? prediction->result.classes[i] : std::uint8_t{kUnlabelled};
+    const std::uint8_t predicted =
+        prediction ? prediction->result.classes[i] : std::uint8_t{kUnlabelled};
+    if (what == Shown::kPrediction) return predicted;
+    if (what == Shown::kErrors) return error_of(predicted, scene.labels.ids[i]);
     if (!prediction) return 0;
     return byte_of(what == Shown::kPSharp ? prediction->result.p_sharp[i]
                                           : prediction->confidence[i]);
