@@ -56,9 +56,11 @@ TEST(FileClasses, OfAResultAreThoseThatWerePainted) {
   }
   set_attribute(cloud, make_attribute("scalar_edge_class", cloud.labels));
   EXPECT_EQ(file_labels(cloud, "a.ply").ids, cloud.labels);
+  EXPECT_TRUE(file_labels(cloud, "a.ply").are_predicted);
   const Bytes painted = {255, 255, 2, 2, 0, 0};
   set_attribute(cloud, make_attribute("scalar_painted_label", painted));
   EXPECT_EQ(file_labels(cloud, "a.ply").ids, painted);
+  EXPECT_FALSE(file_labels(cloud, "a.ply").are_predicted);
 }
 
 TEST(FileClasses, AColumnOfOtherNumbersIsPassedOver) {

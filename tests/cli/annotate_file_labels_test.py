@@ -25,6 +25,7 @@ class AnnotateFileLabels(AnnotateTest):
     def test_are_named_counted_and_a_byte_a_point(self):
         server = self.quiet()
         session = server.get("/api/session")
+        self.assertFalse(session["file_predicted"])
         for of, given in (("file_labels", self.labels), ("las_classes", self.codes)):
             values = self.values(server, of)
             self.assertEqual(len(values), len(self.positions))
@@ -70,6 +71,19 @@ class AnnotateFileLabels(AnnotateTest):
         for other in (1, 3, 7, 255):
             server.post("/api/stroke", {**take, "class": other}, expect=400)
         self.assertEqual(server.request("/api/values?of=las&nodes=0")[0], 400)
+
+    def test_predictions_of_pcednet_are_seen_but_not_painted(self):
+        _, normals, _ = cube(len(self.positions))
+        labels = self.labels.clip(0, 2)
+        write_ply(self.cloud, self.positions, normals, labels, scalar_edge_class=labels,
+                  scalar_p_sharp=labels / 2, scalar_p_smooth=0 * labels)
+        server = self.quiet()
+        session = server.get("/api/session")
+        self.assertTrue(session["file_predicted"])
+        self.assertEqual([each["id"] for each in session["file_labels"]], [0, 2])
+        self.assertEqual(len(self.values(server, "file_labels")), len(self.positions))
+        server.post("/api/stroke", {"id": "a", "tool": "file", "class": 2, "protect": True,
+                                    "hidden": [], "clip": None}, expect=400)
 
     def test_a_cloud_without_has_none(self):
         _, normals, _ = cube(len(self.positions))

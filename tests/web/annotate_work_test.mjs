@@ -303,10 +303,26 @@ test("Escape cancels the stroke first, then the outline, then the training", () 
 });
 
 test("colourings of a prediction are offered once there is one", () => {
-  const now = { ...store.initialState, session: { has_colours: false } };
+  const session = { has_colours: false, file_labels: [], file_predicted: false, las_classes: [] };
+  const now = { ...store.initialState, session };
   assert.deepEqual(commands.modesOf({ now }), ["normals", "labels", "feature"]);
   const modes = commands.modesOf({ now: { ...now, hasPrediction: true } });
   assert.deepEqual(modes, ["normals", "labels", "prediction", "confidence", "p_sharp", "feature"]);
+});
+
+test("colourings of the file are offered where it has such classes, errors where its labels are a truth", () => {
+  const sharp = { id: 2, name: "sharp-edge", colour: [168, 0, 0], points: 9 };
+  const session = { has_colours: false, file_labels: [sharp], file_predicted: false, las_classes: [] };
+  const offered = (more, state = {}) => {
+    const now = { ...store.initialState, hasPrediction: true, session: { ...session, ...more }, ...state };
+    return commands.modesOf({ now }).filter((mode) => ["file", "las", "errors"].includes(mode));
+  };
+  assert.deepEqual(offered({}), ["file", "errors"]);
+  assert.deepEqual(offered({ las_classes: [sharp] }), ["file", "las", "errors"]);
+  assert.deepEqual(offered({ file_predicted: true }), ["file"]);
+  assert.deepEqual(offered({ file_labels: [{ ...sharp, name: "pipe" }] }), ["file"]);
+  assert.deepEqual(offered({}, { edges: false, classes: [{ ...sharp, name: "pipe" }] }), ["file"]);
+  assert.deepEqual(offered({}, { hasPrediction: false }), ["file"]);
 });
 
 test("a cloud that is looked at again is as it was left, but for what the prediction has overtaken", () => {

@@ -135,6 +135,7 @@ export function legend(store: AppStore): HTMLElement {
         const name = session.features[feature];
         title = `${FEATURE_NAMES[name] ?? name}, radius ${length(session.scales[scale] ?? 0)}`;
       }
+      if (mode === "file" && session?.file_predicted) title = "predictions in the file";
       if (PREDICTED.includes(mode) && store.now.outOfDate) title += ", out of date";
       element.replaceChildren(h("b", {}, title));
       if (isRamp(mode)) {

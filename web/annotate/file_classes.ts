@@ -31,9 +31,13 @@ export function fileLabels(state: Known): ShownClass[] {
 export const lasClasses = ({ session }: Pick<State, "session">): ShownClass[] =>
   (session?.las_classes ?? []).map((one) => ({ ...one, colour: hexOf(one.colour) }));
 
+/** The labels of the file that are a truth. */
+const givenLabels = ({ session }: Pick<State, "session">): FileClass[] =>
+  session && !session.file_predicted ? session.file_labels : [];
+
 /** Whether sharp edges that are predicted can be compared with those of the file. */
-export const hasErrors = ({ session, classes, edges }: Pick<State, "session" | "classes" | "edges">): boolean =>
-  edges && (session?.file_labels ?? []).some((one) => one.id === SHARP_EDGE && isProjects(one, { classes, edges }));
+export const hasErrors = (state: Pick<State, "session" | "classes" | "edges">): boolean =>
+  state.edges && givenLabels(state).some((one) => one.id === SHARP_EDGE && isProjects(one, state));
 
 /** What can be said of a prediction of sharp edges, as the report colours it. */
 export const errorClasses: ShownClass[] = ERROR_PALETTE.slice(0, 4).map((meaning, id) => ({ id, ...meaning }));
@@ -51,7 +55,7 @@ export function classBytes(shown: ShownClass[]): Uint8Array {
 /** A stroke for each class of the file that the project can paint; of points that are painted none changes. */
 export function fileStrokes(state: Known & Pick<State, "clip" | "counts">): FileStroke[] {
   const ids = new Set(paintable(state).map(({ id }) => id));
-  return (state.session?.file_labels ?? [])
+  return givenLabels(state)
     .filter((one) => ids.has(one.id) && isProjects(one, state))
     .map(({ id }) => ({
       id: crypto.randomUUID(),

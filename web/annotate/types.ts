@@ -105,6 +105,8 @@ export interface Session extends Classes {
   nodes: NodeInfo[];
   /** None if the file has none. */
   file_labels: FileClass[];
+  /** They are predictions of pcednet: to look at, not to paint from. */
+  file_predicted: boolean;
   las_classes: FileClass[];
   /** What the user should know of the cloud. */
   notes: string[];

@@ -90,13 +90,18 @@ std::vector<std::uint8_t> own_labels(const PointCloud& cloud, const std::filesys
 
 FileClasses file_labels(const PointCloud& cloud, const std::filesystem::path& file) {
   std::vector<std::uint8_t> ids;
-  if (auto truth = detect::truth_of_result(cloud)) ids = std::move(truth->labels);
+  auto truth = detect::truth_of_result(cloud);
+  if (truth) ids = std::move(truth->labels);
+  const bool are_predicted = truth && ids.empty();
   if (ids.empty()) ids = own_labels(cloud, file);
   if (ids.empty()) {
     if (auto column = formats::edge_column_of(cloud)) ids = std::move(column->classes);
   }
   const ClassTable table = classes_of(cloud.comments);
-  return counted(std::move(ids), [&](std::uint8_t id) { return class_of_table(id, table); });
+  FileClasses found =
+      counted(std::move(ids), [&](std::uint8_t id) { return class_of_table(id, table); });
+  found.are_predicted = are_predicted;
+  return found;
 }
 
 FileClasses las_classes(const PointCloud& cloud) {

@@ -21,10 +21,12 @@ struct FileClass {
 struct FileClasses {
   std::vector<std::uint8_t> ids = {};   ///< one per point, kUnlabelled: none; empty: none at all
   std::vector<FileClass> classes = {};  ///< those that points have, by id
+  bool are_predicted = false;           ///< by pcednet: to look at, not to learn from
 };
 
 /// The labels that `cloud`, read from `file`, came with: of a result those that were painted or of
-/// its input; otherwise its own, in any column that formats::labels_of() and edge_column_of() know.
+/// its input, or else its own; otherwise those in any column that formats::labels_of() and
+/// edge_column_of() know.
 FileClasses file_labels(const PointCloud& cloud, const std::filesystem::path& file);
 
 /// The field Classification of LAS, also as CloudCompare names it, with the names of the standard,

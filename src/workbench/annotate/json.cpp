@@ -78,6 +78,7 @@ void describe_scene(const Scene& scene, Json& json) {
   json["nodes"] = nodes_of(scene);
   json["notes"] = notes_of(scene);
   json["file_labels"] = json_of(scene.labels);
+  json["file_predicted"] = scene.labels.are_predicted;
   json["las_classes"] = json_of(scene.las_classes);
 }
 
@@ -201,6 +202,7 @@ std::string to_json(const Summary& summary, Asking window) {
                {"nodes", Json::array()},
                {"features", Json::array()},
                {"file_labels", Json::array()},
+               {"file_predicted", false},
                {"las_classes", Json::array()},
                {"classes", classes_of(summary.classes, summary.counts)},
                {"edges", summary.classes.has_edges()},

@@ -42,7 +42,8 @@ std::vector<std::uint32_t> points_under(const Stroke& stroke, const Scene& scene
   if (stroke.tool != Tool::kFile) return scene.selector->select(stroke);
   const auto& known = scene.labels.classes;
   const auto its = std::ranges::find(known, stroke.edge_class, &FileClass::id);
-  if (its == known.end() || its->name != classes.table[stroke.edge_class].name) {
+  if (scene.labels.are_predicted || its == known.end() ||
+      its->name != classes.table[stroke.edge_class].name) {
     throw Error(ErrorKind::kUsage,
                 fmt::format("stroke: the file has no labels of class {}", stroke.edge_class));
   }
