@@ -15,6 +15,7 @@
 #include "pcednet/formats/cloud_facts.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/io/faces.h"
+#include "pcednet/io/las/facts.h"
 
 namespace pcednet::app {
 
@@ -52,6 +53,11 @@ PointCloud read_cloud(const std::filesystem::path& file, const Progress* progres
   const std::string note = io::note_on_faces(loaded.cloud);
   if (!note.empty()) warn(fmt::format("{}: {}", file.string(), note));
   return std::move(loaded.cloud);
+}
+
+void warn_of_withheld(const std::filesystem::path& file, const PointCloud& cloud) {
+  const std::string note = io::note_on_withheld(io::count_withheld(cloud), cloud.size());
+  if (!note.empty()) warn(fmt::format("{}: {}", file.string(), note));
 }
 
 ClassifiedPoints all_points(ClassifiedCloud&& classified) {

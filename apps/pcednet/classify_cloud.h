@@ -44,6 +44,9 @@ ClassifiedPoints all_points(ClassifiedCloud&& classified);
 /// results that lost their comments, estimated normals are marked.
 PointCloud read_cloud(const std::filesystem::path& file, const Progress* progress = nullptr);
 
+/// Warns of points that are marked as deleted: they are labelled like all others.
+void warn_of_withheld(const std::filesystem::path& file, const PointCloud& cloud);
+
 /// How to classify: by `model`, then for boundary by geometry if `boundary`; without a model by the
 /// method.
 struct Classifier {

@@ -103,6 +103,19 @@ class Filter(CliTest):
         self.assertIn(f"{(rows['flags'] >> 2 & 1).sum()} of 2000 points are withheld (deleted): labelled like all "
                       "others; convert --drop-flag withheld leaves them out", facts)
 
+    def test_what_labels_deleted_points_says_so_once(self):
+        rows, _ = self.survey()
+        source = self.write(rows)
+        told = (f"{source}: {(rows['flags'] >> 2 & 1).sum()} of 2000 points are withheld (deleted): labelled like all "
+                "others; convert --drop-flag withheld leaves them out")
+        clean = self.converted(source, "--drop-flag", "withheld", name="clean.las")
+        plan, out = self.folder / "a.plan", self.folder / "out.las"
+        for command in (["classify", "-o", out], ["classify", "-o", out, "--max-memory", "1M"],
+                        ["lines", "-o", self.folder / "out.dxf"], ["tiles", "plan", "-o", plan]):
+            with self.subTest(command=command):
+                self.assertEqual(run(*command, source, "--overwrite").stderr.count(told), 1)
+                self.assertNotIn("withheld", run(*command, clean, "--overwrite").stderr)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -198,6 +198,7 @@ void classify_file(const Job& job, const ClassifyArguments& arguments,
   const Progress& progress = clock.progress();
   clock.begin("read");
   PointCloud cloud = read_cloud(job.input, &progress);
+  warn_of_withheld(job.input, cloud);
   set_viewpoint(job.input, arguments.viewpoint, cloud);
   check_codes_fit(arguments.codes, job, cloud);
   formats::check_positions(job.output, cloud);

@@ -102,6 +102,7 @@ void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledC
   PointCloud& cloud = labelled.cloud;
   cloud = read_cloud(arguments.input, &clock.progress());
   set_viewpoint(arguments.input, arguments.viewpoint, cloud);
+  warn_of_withheld(arguments.input, cloud);
   warn_of_lines(arguments.input, cloud);
   throw_if_cancelled(&clock.progress());
   std::vector<std::uint8_t> given = labels_to_draw(arguments, cloud);

@@ -161,6 +161,7 @@ void add_part(const PointCloud& part, CloudFacts& facts) {
   facts.defects.normals += defects.normals;
   facts.defects.duplicates += defects.duplicates;
   if (facts.las) io::count_points(part, *facts.las);
+  facts.withheld += io::count_withheld(part);
 }
 
 std::vector<std::string> find_problems(const CloudFacts& facts) {
@@ -187,10 +188,8 @@ std::vector<std::string> find_problems(const CloudFacts& facts) {
     add(noise(7) + noise(18),
         "points are of the classes 7 and 18, noise: labelled like all others; convert --drop-class "
         "7,18 leaves them out");
-    add(facts.las->withheld,
-        "points are withheld (deleted): labelled like all others; convert --drop-flag withheld "
-        "leaves them out");
   }
+  if (facts.withheld > 0) problems.push_back(io::note_on_withheld(facts.withheld, facts.read));
   if (facts.points > 0 && !facts.has_normals) {
     problems.emplace_back("no normals: they will be estimated");
   }

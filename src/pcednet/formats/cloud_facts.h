@@ -74,6 +74,7 @@ struct CloudFacts {
   Defects defects = {};
   /// Points with fewer than three others within SampledSpacing::reach(); none if read in parts.
   std::optional<std::size_t> outliers = {};
+  std::size_t withheld = 0;  ///< points that LAS marks as deleted
   std::size_t rescaled_normals = 0;
   std::vector<std::string> problems = {};  ///< possible surprises, one sentence each
   std::optional<io::E57Document> e57 = {};

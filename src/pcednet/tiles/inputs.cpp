@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "pcednet/core/output_file.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/formats/format.h"
+#include "pcednet/io/las/facts.h"
 #include "pcednet/io/las/file.h"
 #include "pcednet/io/las/las.h"
 #include "pcednet/io/scanners.h"
@@ -229,6 +231,7 @@ IndexedInput index_input(const fs::path& path, const Progress* progress,
                    .narrow_colours = reader->narrow_colours(),
                    .chunks = {}};
   io::PartTally tally;
+  std::size_t withheld = 0;
   Stage stage(progress, "index", reader->points());
   std::vector<std::size_t> parts(reader->parts());
   std::iota(parts.begin(), parts.end(), std::size_t{0});
@@ -236,6 +239,7 @@ IndexedInput index_input(const fs::path& path, const Progress* progress,
     std::string digest = digest_of(part);
     io::finish_part(part, tally);
     with_name_in_errors(path.string(), [&] { check_extent(part.positions); });
+    withheld += io::count_withheld(part);
     see(part);
     stage.advance(part.size());
     const bool is_first = indexed.input.chunks.empty();
@@ -246,10 +250,11 @@ IndexedInput index_input(const fs::path& path, const Progress* progress,
   };
   read_in_turn(
       parts, [&](std::size_t p) { return reader->read(p); }, take);
-  for (const auto& warnings : {reader->warnings, io::warnings_of(tally)}) {
-    for (const std::string& warning : warnings) {
-      notes.push_back(fmt::format("{}: {}", path.string(), warning));
-    }
+  std::vector<std::string> warnings = reader->warnings;
+  std::ranges::copy(io::warnings_of(tally), std::back_inserter(warnings));
+  if (withheld > 0) warnings.push_back(io::note_on_withheld(withheld, tally.points));
+  for (const std::string& warning : warnings) {
+    notes.push_back(fmt::format("{}: {}", path.string(), warning));
   }
   return indexed;
 }

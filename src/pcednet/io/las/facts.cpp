@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "pcednet/io/promote.h"
+
 namespace pcednet::io {
 namespace {
 
@@ -102,9 +104,21 @@ LasFacts las_facts(const InputFile& file) {
 void count_points(const PointCloud& points, LasFacts& facts) {
   count_values(points, "ReturnNumber", facts.points_by_return);
   count_values(points, "Classification", facts.points_by_class);
-  std::map<int, std::size_t> withheld;
-  count_values(points, "Withheld", withheld);
-  facts.withheld += withheld[1];
+}
+
+std::size_t count_withheld(const PointCloud& points) {
+  const Attribute* field = find_called(points, "withheld");
+  std::size_t withheld = 0;
+  for (std::size_t i = 0; field && i < points.size(); ++i) withheld += field->value(i) != 0.0;
+  return withheld;
+}
+
+std::string note_on_withheld(std::size_t withheld, std::size_t points) {
+  if (withheld == 0) return {};
+  return fmt::format(
+      "{} of {} points are withheld (deleted): labelled like all others; convert --drop-flag "
+      "withheld leaves them out",
+      withheld, points);
 }
 
 }  // namespace pcednet::io

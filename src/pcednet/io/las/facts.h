@@ -34,7 +34,6 @@ struct LasFacts {
   std::vector<Record> records;    ///< extended ones last
   std::vector<std::string> extra_bytes;
   std::map<int, std::size_t> points_by_return, points_by_class;
-  std::size_t withheld = 0;  ///< points marked as deleted
 };
 
 /// The description of the points in the header and the records of a LAS or LAZ file.
@@ -55,5 +54,11 @@ LasFacts las_facts(const InputFile& file);
 
 /// Counts the points of read_las(), or of one part.
 void count_points(const PointCloud& points, LasFacts& facts);
+
+/// The points that are marked as deleted, by the field Withheld of a cloud of any format.
+std::size_t count_withheld(const PointCloud& points);
+
+/// For the user, where so many of `points` are labelled; empty if none is withheld.
+std::string note_on_withheld(std::size_t withheld, std::size_t points);
 
 }  // namespace pcednet::io
