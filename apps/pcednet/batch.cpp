@@ -95,7 +95,7 @@ std::vector<Footprint> footprints(std::span<const fs::path> files) {
     if (!format || !format->is_las() || !fs::is_regular_file(path, error)) continue;
     try {
       const io::LasOutline las = io::las_outline(io::InputFile(path));
-      if (las.points > 0) found.push_back({path, las.bounds});
+      if (las.points > 0 && !las.bounds.empty()) found.push_back({path, las.bounds});
     } catch (const Error&) {
       continue;  // told where it is read
     }

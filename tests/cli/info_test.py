@@ -176,6 +176,12 @@ class Info(CliTest):
                          ["./tiles/a.laz", "./tiles/b.copc.laz"])
         self.assertEqual([item["properties"]["pc:count"] for item in items], [300, 300])
         run("info", tiles, "--vpc", self.folder / "all.vpc", expect=2)
+        bare = bytearray(whole)
+        struct.pack_into("<6d", bare, 179, *[np.nan] * 6)
+        (self.folder / "bare.laz").write_bytes(bare)
+        self.assertRegex(run("info", self.folder / "bare.laz").stdout, r"points +300\n")
+        said = run("info", self.folder / "bare.laz", "--vpc", self.folder / "b.vpc", expect=3).stderr
+        self.assertIn("bare.laz: the header has no bounds of the points", said)
         said = run("info", self.folder / "a.ply", "--vpc", self.folder / "b.vpc", expect=2).stderr
         self.assertIn("a.ply: --vpc lists LAS, LAZ and COPC files, which pcednet convert writes", said)
         self.assertFalse((self.folder / "b.vpc").exists())

@@ -62,6 +62,18 @@ class Tiles(TilesTest):
         self.assertIn(f"scales: {content['scales']['s_min']:.9g} to "
                       f"{content['scales']['s_max']:.9g}", said)
 
+    def test_other_formats_are_refused_with_the_command_that_makes_one_of_these(self):
+        p, n = field(2, 200)
+        write_ply(self.folder / "a.ply", p, n)
+        for other, readable in (("a.xyz", "a.ply"), ("a.pcd", "a.ply"), ("text.ply", "text.laz")):
+            other, readable = self.folder / other, self.folder / readable
+            run("convert", self.folder / "a.ply", "-o", other, *(["--ascii"] if other.suffix == ".ply" else []))
+            said = run("tiles", "plan", other, "-o", self.folder / "q.json", expect=2).stderr
+            command = f"convert {other} -o {readable}"
+            self.assertIn(f"pcednet {command} makes one", said)
+            run(*command.split(), "--overwrite")
+            self.make_plan(readable)
+
     def test_las_keeps_its_columns_and_steps(self):
         p, n = field(3, 600)
         write_ply(self.folder / "a.ply", p + np.float32(100), n)

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <utility>
 
 #include "pcednet/formats/write_cloud.h"
 #include "support/own_folder.h"
@@ -37,6 +39,31 @@ TEST_F(LargeFacts, TheSpacingIsThatOfThePlaces) {
 
 TEST_F(LargeFacts, FewerPlacesThanNeighboursHaveNoSpacing) {
   EXPECT_FALSE(facts_of({{0, 0, 0}, {1, 0, 0}, {7, 1e6, 0}, {-1e9, 0, 0}}, 420'000).spacing);
+}
+
+TEST_F(LargeFacts, BoundsOfAHeaderThatDoNotHoldThePointsDoNotCount) {
+  const std::filesystem::path path = folder_ / "in.las";
+  PointCloud cloud;
+  for (int i = 0; i < 1'600'000; ++i) cloud.positions.emplace_back(i % 1000 + 500'000, i / 1000, 7);
+  formats::write_cloud(path, cloud, {});
+  const auto facts_with = [&](double least, double most) {
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(179);
+    for (int axis = 0; axis < 3; ++axis) {
+      file.write(reinterpret_cast<const char*>(&most), sizeof most);
+      file.write(reinterpret_cast<const char*>(&least), sizeof least);
+    }
+    file.close();
+    return large_facts(path, {.large = 1'000'000}).value();
+  };
+  EXPECT_EQ(facts_with(-1.0, 1e6).bounds.max, Vec3::Constant(1e6));
+  for (const auto& [least, most] : {std::pair(0.0, 0.0), {1e9, -1e9}, {-NAN, NAN}}) {
+    const formats::CloudFacts facts = facts_with(least, most);
+    EXPECT_EQ(facts.bounds.min, Vec3(500'000, 0, 7));
+    EXPECT_NEAR(facts.bounds.max.y(), 1600, 100);  // of the last part of the sample
+    ASSERT_EQ(facts.warnings.size(), 1u);
+    EXPECT_NE(facts.warnings[0].find("those of the sample"), std::string::npos);
+  }
 }
 
 }  // namespace

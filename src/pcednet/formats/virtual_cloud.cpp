@@ -228,6 +228,10 @@ VirtualFile virtual_file(const fs::path& path) {
                 path.string() + ": a virtual point cloud can list only LAS, LAZ and COPC files");
   }
   const io::LasOutline las = io::las_outline(file);
+  if (las.points > 0 && las.bounds.empty()) {
+    throw io::unreadable(path,
+                         "the header has no bounds of the points; pcednet convert writes them");
+  }
   return {.path = path,
           .points = las.points,
           .bounds = las.bounds,

@@ -179,10 +179,12 @@ std::unique_ptr<io::PartReader> open_chunks(const fs::path& path) {
   const formats::Format& format = formats::format_of(*file);
   auto reader = format.is_tiled() ? format.open_parts(std::move(file), kChunkPoints) : nullptr;
   if (reader) return reader;
+  fs::path readable = path;
+  readable.replace_extension(format.name == "PLY" ? ".laz" : ".ply");
   throw Error(ErrorKind::kUsage,
-              fmt::format("{}: tiles are read from LAS, LAZ and binary PLY without lists; "
-                          "convert it to one of these",
-                          path.string()));
+              fmt::format("{0}: tiles are read from LAS, LAZ and binary PLY without lists: "
+                          "pcednet convert {0} -o {1} makes one",
+                          path.string(), readable.string()));
 }
 
 void check_not_input(const fs::path& output, std::span<const PlannedInput> inputs) {

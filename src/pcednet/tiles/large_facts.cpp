@@ -113,7 +113,12 @@ void add_sample(const io::PartReader& reader, const BoundingBox& whole, CloudFac
   };
   read_parts(reader, chosen_parts(reader.parts(), false), "sample", progress, see, tally);
   settle(tally, facts);
-  if (!whole.empty()) facts.bounds = whole;
+  if (whole.holds(facts.bounds.min) && whole.holds(facts.bounds.max)) {
+    facts.bounds = whole;
+  } else if (facts.las) {
+    facts.warnings.emplace_back(
+        "the bounds in the header do not hold the points: those of the sample are given");
+  }
   double cover = 0.0;
   for (const BoundingBox& box : boxes) cover += share_of(box, facts.bounds);
   cover *= static_cast<double>(reader.parts()) / static_cast<double>(boxes.size());

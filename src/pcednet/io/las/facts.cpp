@@ -60,10 +60,10 @@ LasOutline las_outline(const InputFile& file) {
     outline.bounds.max[static_cast<int>(axis)] = number_at<double>(las.header, at);
     outline.bounds.min[static_cast<int>(axis)] = number_at<double>(las.header, at + 8);
   }
-  if (!outline.bounds.min.allFinite() || !outline.bounds.max.allFinite()) {
-    throw unreadable(file.path(),
-                     fmt::format("byte {}: bounds that are not numbers", las_header::kBounds));
-  }
+  const BoundingBox& bounds = outline.bounds;
+  const bool are_bounds = (bounds.min.array() <= bounds.max.array()).all() &&
+                          bounds.min.allFinite() && bounds.max.allFinite();
+  if (!are_bounds) outline.bounds = {};
   for (LasField& field : las_extra_fields(las, warnings)) {
     outline.fields.push_back(std::move(field));
   }

@@ -39,14 +39,14 @@ struct LasFacts {
 /// The description of the points in the header and the records of a LAS or LAZ file.
 struct LasOutline {
   std::uint64_t points = 0;
-  BoundingBox bounds = {};
+  BoundingBox bounds = {};  ///< empty if those of the header are none
   bool compressed = false, copc = false;
   unsigned created_day = 0, created_year = 0;  ///< 0: not stated
   CoordinateSystem coordinate_system = {};
   std::vector<LasField> fields = {};  ///< X, Y and Z first, extra bytes last
 };
 
-/// Reads no points. Throws Error(kUnreadable) as read_las, also for bounds that are not numbers.
+/// Reads no points. Throws Error(kUnreadable) as read_las.
 LasOutline las_outline(const InputFile& file);
 
 /// Reads the header and the records, no points. Throws as read_las.
