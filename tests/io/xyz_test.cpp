@@ -173,6 +173,39 @@ TEST(Xyz, ReadsQuotedNumbersUnderQuotedNames) {
   }
 }
 
+TEST(Xyz, LeavesOutNamedColumnsOfText) {
+  const Scratch scratch;
+  for (const char* text :
+       {"Nr;E;N;H;Code;q\nP1;1;2;3;kerb;7\nP2;4;5;6;;8\n",
+        "Nr;E;N;H;Code;q\nP1;1,0;2;3;a.b;7\n7;4;5;6;1;8\n",
+        "# Nr x y z Code q\nP1 1 2 3 #f00 7\nP2 4 5 6 #00f 8\n",
+        "\"Nr\",\"x\",\"y\",\"z\",\"Code\",\"q\"\n\"P1\",1,2,3,\"a\",\"7\"\n\"P2\",4,5,6,\"b\","
+        "\"8\"\n",
+        "Nr x y z Code q\n1:30 1 2 3 2024-01-01T00:00 7\n1:31 4 5 6 2024-01-01T00:01 8\n"}) {
+    const auto loaded = scratch.read("a.csv", text);
+    EXPECT_EQ(loaded.cloud.positions, (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}})) << text;
+    ASSERT_EQ(loaded.cloud.attributes.size(), 1u) << text;
+    EXPECT_EQ(loaded.cloud.attributes[0].value(1), 8.0);
+    EXPECT_EQ(loaded.warnings, std::vector<std::string>{"columns of text are left out: Nr, Code"})
+        << text;
+    EXPECT_NE(begins_as_points(InputFile(scratch.path("a.csv"))), *text == '#') << text;
+  }
+  for (const char* text : {"P1 1 2 3\n", "Nr x y z\n1 a 2 3\n", "Nr x y z\n1 1 2 3\nP2 4 5 6\n"}) {
+    EXPECT_TRUE(contains(error_of(ErrorKind::kUnreadable, [&] { scratch.read("a.txt", text); }),
+                         "expected"))
+        << text;
+  }
+}
+
+TEST(Xyz, ReadsTheColoursOfCloudCompare) {
+  const Scratch scratch;
+  const auto cloud =
+      scratch.read("a.asc", "//X Y Z Rf Gf Bf\n1 2 3 0.2 1.0 0\n4 5 6 0 0.4 1.0\n").cloud;
+  ASSERT_EQ(cloud.colours.size(), 2u);
+  EXPECT_EQ(cloud.colours[0], (std::array<std::uint8_t, 3>{51, 255, 0}));
+  EXPECT_TRUE(cloud.attributes.empty());
+}
+
 TEST(Xyz, TellsProseFromNames) {
   const Scratch scratch;
   const auto cloud = scratch.read("a.xyz", "# the x y z of a scan\n1 2 3\n").cloud;

@@ -138,7 +138,10 @@ const std::vector<std::string>& label_names() {
 
 const std::vector<std::vector<std::string>>& colour_names() {
   static const std::vector<std::vector<std::string>> names = {
-      {"red", "green", "blue"}, {"diffuse_red", "diffuse_green", "diffuse_blue"}, {"r", "g", "b"}};
+      {"red", "green", "blue"},
+      {"diffuse_red", "diffuse_green", "diffuse_blue"},
+      {"r", "g", "b"},
+      {"rf", "gf", "bf"}};  // CloudCompare: from 0 to 1
   return names;
 }
 

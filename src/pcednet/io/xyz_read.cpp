@@ -40,10 +40,14 @@ std::string without_quotes(std::string_view line) {
   }
 }
 
-bool begin_with_numbers(const std::vector<std::string_view>& words) {
-  return words.size() >= 3 && std::all_of(words.begin(), words.begin() + 3, [](const auto& word) {
-           return parse_double(word).has_value();
-         });
+bool is_number(std::string_view word) {
+  return parse_double(word).has_value();
+}
+
+/// Under names there may be columns of text among the numbers.
+bool may_be_point(const std::vector<std::string_view>& words, bool named) {
+  if (named) return std::ranges::count_if(words, is_number) >= 3;
+  return words.size() >= 3 && std::all_of(words.begin(), words.begin() + 3, is_number);
 }
 
 class TableReader {
@@ -89,8 +93,7 @@ class TableReader {
   void take_first(std::string_view line) {
     split(line, words_, kNumberSeparators);
     if (take_count()) return;
-    const bool is_number = !words_.empty() && parse_double(words_[0]).has_value();
-    if (!is_number && names_.empty()) {
+    if (names_.empty() && (words_.empty() || !is_number(words_[0]))) {
       names_ = split_names(line);
       quoted_ = line.find('"') != std::string_view::npos;
       if (name_positions(names_)) return;
@@ -116,7 +119,17 @@ class TableReader {
       throw error(fmt::format("{} numbers under {} names", words_.size(), names_.size()));
     }
     table_ = NumberTable(words_.size());
+    find_text();
     take_row(line);
+  }
+
+  /// Named columns, other than positions, whose first word is no number.
+  void find_text() {
+    is_text_.assign(words_.size(), false);
+    for (std::size_t c = 0; c < names_.size(); ++c) {
+      const bool is_position = names_[c] == "x" || names_[c] == "y" || names_[c] == "z";
+      is_text_[c] = !is_position && !number_of(words_[c]);
+    }
   }
 
   /// Takes the words for the count of the points that follow, if they can be that: at the
@@ -162,6 +175,16 @@ class TableReader {
     split_fields(line, commas_ == Commas::kDecimals ? kSemicolons : kCommasAndSemicolons, words_);
   }
 
+  /// The numbers of a row between texts, whose commas and points mean nothing; empty without texts.
+  std::string beside_text() const {
+    std::string numbers;
+    if (std::ranges::count(is_text_, true) == 0 || words_.size() != is_text_.size()) return numbers;
+    for (std::size_t c = 0; c < words_.size(); ++c) {
+      if (!is_text_[c]) numbers.append(words_[c]) += commas_ == Commas::kDecimals ? ';' : ',';
+    }
+    return numbers;
+  }
+
   std::size_t empty_words() const {
     return static_cast<std::size_t>(std::count(words_.begin(), words_.end(), std::string_view()));
   }
@@ -200,31 +223,36 @@ class TableReader {
 
   void take_row(std::string_view line) {
     decide_on_commas(line);
-    check_commas(line);
     split_row(line);
+    const std::string numbers = beside_text();
+    check_commas(numbers.empty() ? line : numbers);
     if (promised_ && take_count()) return;
     if (words_.size() == table_.columns() + 1 && words_.back().empty()) words_.pop_back();
     if (words_.size() != table_.columns()) {
       throw error(fmt::format("{} number{} where the lines before have {}", words_.size(),
                               words_.size() == 1 ? "" : "s", table_.columns()));
     }
-    const std::size_t empty = empty_words();
-    if (empty == words_.size()) return;  // as spreadsheets end a table
-    empty_ += empty;
-    double* next = table_.add_row();
-    for (const std::string_view word : words_) {
-      const auto number = number_of(word);
-      if (!number) throw error(number_fault(word));
-      *next++ = *number;
+    if (empty_words() == words_.size()) return;  // as spreadsheets end a table
+    double* const row = table_.add_row();
+    for (std::size_t c = 0; c < words_.size(); ++c) {
+      if (is_text_[c]) continue;
+      empty_ += words_[c].empty();
+      const auto number = number_of(words_[c]);
+      if (!number) throw error(number_fault(words_[c]));
+      row[c] = *number;
     }
   }
 
   LoadedCloud build() {
     const bool guessed = names_.empty();
     if (guessed) names_ = guess_column_names(table_, kind());
+    is_text_.resize(names_.size());
     std::vector<Column> columns;
+    std::vector<std::string> of_text;
     for (std::size_t c = 0; c < names_.size(); ++c) {
       columns.push_back({names_[c].empty() ? fmt::format("scalar_{}", c + 1) : names_[c]});
+      columns[c].skip = is_text_[c];
+      if (is_text_[c]) of_text.push_back(columns[c].name);
     }
     const bool is_numbered = guessed && counts_rows(table_);
     CloudBuilder builder(path_, columns, table_.rows());
@@ -234,6 +262,10 @@ class TableReader {
     if (empty_ > 0) {
       loaded.warnings.push_back(
           fmt::format("{} numbers are missing between separators: read as nan", empty_));
+    }
+    if (!of_text.empty()) {
+      loaded.warnings.push_back(
+          fmt::format("columns of text are left out: {}", fmt::join(of_text, ", ")));
     }
     if (guessed && table_.columns() > 3) {
       loaded.warnings.push_back(fmt::format("no column names: read as {}{}", fmt::join(names_, " "),
@@ -263,6 +295,7 @@ class TableReader {
   Commas commas_ = Commas::kNone;  ///< those of all lines
   std::size_t deciding_line_ = 0;
   std::size_t line_with_point_ = 0;  ///< the first, before commas
+  std::vector<bool> is_text_;        ///< columns
   std::size_t empty_ = 0;            ///< numbers that are missing
   NumberTable table_;
 };
@@ -287,7 +320,7 @@ bool begins_as_points(const InputFile& file) {
     line = trim(line);
     if (line.empty() || is_comment(line)) continue;
     split(line, words, kAroundNumbers);
-    if (begin_with_numbers(words)) return true;
+    if (may_be_point(words, named)) return true;
     const bool is_count = !counted && words.size() == 1 && parse_count(words[0]);
     std::vector<std::string> names = split_names(line);
     const bool is_names = !named && name_positions(names);
