@@ -112,6 +112,13 @@ TEST_F(Agreement, NeedsOneSystemOfHeights) {
   EXPECT_TRUE(
       refused(with(system_with_heights("", "DHHN92")), with(system_with_heights("", "DHHN2016")))
           .starts_with("have different coordinate systems"));
+  const auto as_esri = [&](const char* name) {
+    return with(
+        {"LASF_Projection", 2112, fmt::format(R"({},VERTCS["{}",UNIT["Meter",1.0]])", kUtm, name)});
+  };
+  EXPECT_EQ(refused(as_esri("DHHN92"), as_esri("DHHN92")), "");
+  EXPECT_TRUE(refused(as_esri("DHHN92"), as_esri("DHHN2016"))
+                  .starts_with("have different coordinate systems"));
   EXPECT_TRUE(refused(plain, some_points())
                   .starts_with("have different coordinate systems: EPSG 25832, and none"));
 }

@@ -34,6 +34,12 @@ struct ProjFunctions {
   decltype(&proj_as_wkt) as_wkt;
   decltype(&proj_trans) trans;
   decltype(&proj_destroy) destroy;
+  decltype(&proj_identify) identify;
+  decltype(&proj_int_list_destroy) int_list_destroy;
+  decltype(&proj_list_get_count) list_get_count;
+  decltype(&proj_list_get) list_get;
+  decltype(&proj_list_destroy) list_destroy;
+  decltype(&proj_get_id_code) get_id_code;
 };
 
 #ifdef PCEDNET_PROJ_LIBRARY
@@ -61,7 +67,13 @@ const ProjFunctions* proj() {
         load_function(library, "proj_is_crs", f.is_crs) &&
         load_function(library, "proj_as_wkt", f.as_wkt) &&
         load_function(library, "proj_trans", f.trans) &&
-        load_function(library, "proj_destroy", f.destroy);
+        load_function(library, "proj_destroy", f.destroy) &&
+        load_function(library, "proj_identify", f.identify) &&
+        load_function(library, "proj_int_list_destroy", f.int_list_destroy) &&
+        load_function(library, "proj_list_get_count", f.list_get_count) &&
+        load_function(library, "proj_list_get", f.list_get) &&
+        load_function(library, "proj_list_destroy", f.list_destroy) &&
+        load_function(library, "proj_get_id_code", f.get_id_code);
     return found ? std::optional(f) : std::nullopt;
   }();
   return functions ? &*functions : nullptr;
@@ -80,7 +92,13 @@ const ProjFunctions* proj() {
                                           proj_is_crs,
                                           proj_as_wkt,
                                           proj_trans,
-                                          proj_destroy};
+                                          proj_destroy,
+                                          proj_identify,
+                                          proj_int_list_destroy,
+                                          proj_list_get_count,
+                                          proj_list_get,
+                                          proj_list_destroy,
+                                          proj_get_id_code};
   return &functions;
 }
 
@@ -89,6 +107,8 @@ const ProjFunctions* proj() {
 struct Destroy {
   void operator()(PJ_CONTEXT* context) const { proj()->context_destroy(context); }
   void operator()(PJ* object) const { proj()->destroy(object); }
+  void operator()(PJ_OBJ_LIST* list) const { proj()->list_destroy(list); }
+  void operator()(int* numbers) const { proj()->int_list_destroy(numbers); }
 };
 using ProjContext = std::unique_ptr<PJ_CONTEXT, Destroy>;
 using ProjObject = std::unique_ptr<PJ, Destroy>;
@@ -136,6 +156,21 @@ std::string definition_of(const CoordinateSystem& system, WktVersion version) {
   return text ? text : "";
 }
 
+int code_of_definition(const std::string& wkt) {
+  constexpr int kSure = 100;
+  const Projected found = look_up({.wkt = wkt});
+  if (!found.system) return 0;
+  PJ_CONTEXT* context = found.context.get();
+  int* how_sure = nullptr;
+  const std::unique_ptr<PJ_OBJ_LIST, Destroy> matches(
+      proj()->identify(context, found.system.get(), "EPSG", nullptr, &how_sure));
+  const std::unique_ptr<int, Destroy> sure(how_sure);
+  if (!matches || proj()->list_get_count(matches.get()) == 0 || *sure < kSure) return 0;
+  const ProjObject best(proj()->list_get(context, matches.get(), 0));
+  const char* code = best ? proj()->get_id_code(best.get(), 0) : nullptr;
+  return code ? epsg_code(code) : 0;
+}
+
 std::optional<std::vector<std::array<double, 2>>> to_wgs84(
     const CoordinateSystem& system, std::vector<std::array<double, 2>> points) {
   const Projected found = look_up(system);
@@ -166,6 +201,10 @@ bool has_projections() {
 
 std::string definition_of(const CoordinateSystem&, WktVersion) {
   return {};
+}
+
+int code_of_definition(const std::string&) {
+  return 0;
 }
 
 std::optional<std::vector<std::array<double, 2>>> to_wgs84(const CoordinateSystem&,

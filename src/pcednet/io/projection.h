@@ -21,6 +21,10 @@ enum class WktVersion { k1, k2 };  ///< OGC 01-009, as in LAS; ISO 19162:2019
 /// does not know it.
 std::string definition_of(const CoordinateSystem& system, WktVersion version);
 
+/// The EPSG code of the system that a definition without codes, as ESRI writes them, describes; 0
+/// unless PROJ knows one that is surely the same.
+int code_of_definition(const std::string& wkt);
+
 /// The system of a code that a user gives, with its definition and unit as far as this build has
 /// PROJ. Throws Error(kUsage), which begins with the code, for a number that is no code of a
 /// system of x and y: out of kLeastEpsgCode to kMostEpsgCode or, with PROJ, unknown to it or a

@@ -113,7 +113,7 @@ std::string heights_in(const std::string& wkt) {
     if (!std::isspace(byte)) text += static_cast<char>(std::toupper(byte));
   }
   std::size_t begin = std::string::npos;
-  for (const char* keyword : {"VERT_CS[", "VERTCRS[", "VERTICALCRS["}) {
+  for (const char* keyword : {"VERT_CS[", "VERTCS[", "VERTCRS[", "VERTICALCRS["}) {
     begin = std::min(begin, text.find(keyword));
   }
   return begin == std::string::npos ? "" : text.substr(begin);

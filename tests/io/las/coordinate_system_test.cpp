@@ -42,6 +42,34 @@ TEST(LasCoordinateSystem, IsThatOfTheWktOrOfTheKeys) {
   EXPECT_EQ(las_coordinate_system(ply).wkt, kWkt);
 }
 
+TEST(LasCoordinateSystem, WithoutACodeGetsThatOfProj) {
+  const Scratch scratch;
+  const std::string esri =
+      "PROJCS[\"ETRS_1989_UTM_Zone_32N\",GEOGCS[\"GCS_ETRS_1989\",DATUM[\"D_ETRS_1989\","
+      "SPHEROID[\"GRS_1980\",6378137.0,298.257222101]],PRIMEM[\"Greenwich\",0.0],"
+      "UNIT[\"Degree\",0.0174532925199433]],PROJECTION[\"Transverse_Mercator\"],"
+      "PARAMETER[\"False_Easting\",500000.0],PARAMETER[\"False_Northing\",0.0],"
+      "PARAMETER[\"Central_Meridian\",9.0],PARAMETER[\"Scale_Factor\",0.9996],"
+      "PARAMETER[\"Latitude_Of_Origin\",0.0],UNIT[\"Meter\",1.0]]";
+  const std::string heights =
+      "VERTCS[\"DHHN2016_(height)\",VDATUM[\"Deutsches_Haupthoehennetz_2016\"],"
+      "PARAMETER[\"Vertical_Shift\",0.0],PARAMETER[\"Direction\",1.0],UNIT[\"Meter\",1.0]]";
+  const auto system_of = [&](const std::string& wkt) {
+    return las_coordinate_system(
+        cloud_with(scratch, {{"LASF_Projection", 2112, wkt + std::string(1, '\0')}}));
+  };
+  for (const std::string& wkt : {esri, esri + "," + heights}) {
+    EXPECT_EQ(system_of(wkt).epsg, has_projections() ? 25832 : 0);
+    EXPECT_EQ(system_of(wkt).unit, LengthUnit::kMetre);
+    EXPECT_EQ(system_of(wkt).wkt, wkt);
+  }
+  std::string local = esri;  // of a project of one's own
+  local.replace(local.find("9.0]"), 4, "9.1]");
+  for (const std::string& wkt : {local, heights, std::string("PROJCS[\"a"), std::string("what")}) {
+    EXPECT_EQ(system_of(wkt).epsg, 0) << wkt;
+  }
+}
+
 TEST(LasCoordinateSystem, OfTheCommentsOfE57IsWritten) {
   const Scratch scratch;
   PointCloud cloud;

@@ -64,12 +64,22 @@ CoordinateSystem coordinate_system_of_keys(std::string_view data, bool ask_for_u
   return system;
 }
 
-CoordinateSystem find_system(const LasFile& file, bool ask_for_unit) {
+/// A definition may name no code: PROJ tells it, as above.
+CoordinateSystem coordinate_system_of_text(const std::string& wkt, bool ask_for_code) {
+  CoordinateSystem system = coordinate_system_of_wkt(wkt);
+  if (!ask_for_code || system.epsg > 0 || is_of_heights_alone(system)) return system;
+  // ESRI puts the system of heights behind the other.
+  system.epsg = code_of_definition(wkt.substr(0, wkt.find(",VERTCS[")));
+  return system;
+}
+
+/// `ask`: PROJ, for what the file leaves open.
+CoordinateSystem find_system(const LasFile& file, bool ask) {
   CoordinateSystem system;
   for (const auto* records : {&file.records, &file.extended_records}) {
     for (const LasRecord& record : *records) {
-      if (record.is(kWktRecord)) return coordinate_system_of_wkt(until_zero(record.data));
-      if (record.is(kGeoKeysRecord)) system = coordinate_system_of_keys(record.data, ask_for_unit);
+      if (record.is(kWktRecord)) return coordinate_system_of_text(until_zero(record.data), ask);
+      if (record.is(kGeoKeysRecord)) system = coordinate_system_of_keys(record.data, ask);
     }
   }
   return system;
@@ -95,7 +105,7 @@ CoordinateSystem las_coordinate_system(const PointCloud& cloud) {
   if (std::any_of(elements.begin(), elements.end(), is_las_element)) {
     return find_system(attached_las_file(cloud), true);
   }
-  return coordinate_system_of_wkt(wkt_of_comments(cloud.comments));
+  return coordinate_system_of_text(wkt_of_comments(cloud.comments), true);
 }
 
 std::vector<std::string> las_element_losses(const PointCloud& cloud) {

@@ -48,8 +48,8 @@ std::unique_ptr<PartWriter> create_las_parts(const std::filesystem::path& path,
 void check_las_positions(const std::filesystem::path& path, const PointCloud& cloud);
 
 /// The coordinate system of a cloud that was read from LAS, or from a PLY file made from one: that
-/// of its WKT, otherwise of its GeoTIFF keys. Where these state no unit, it is the one that PROJ
-/// knows of their codes. Of any other cloud, that of its comments, as E57 has.
+/// of its WKT, otherwise of its GeoTIFF keys. Where these state no unit, or the WKT no code, it is
+/// the one that PROJ knows. Of any other cloud, that of its comments, as E57 has.
 CoordinateSystem las_coordinate_system(const PointCloud& cloud);
 
 /// What a format loses that keeps neither header nor records of LAS, as phrases: the coordinate
