@@ -1,5 +1,6 @@
 """Several inputs at once: what is refused before the work, what is passed over, what is left behind."""
 import os
+import resource
 import unittest
 
 import numpy as np
@@ -107,6 +108,16 @@ class Inputs(CliTest):
         (self.folder / "other").mkdir()
         (self.folder / "other/README.txt").write_text("Nothing here.\n")
         self.assertIn("no point files in it", run("classify", self.folder / "other", expect=4).stderr)
+
+    def test_convert_reads_text_beyond_memory_in_parts(self):
+        text = self.folder / "a.xyz"
+        text.write_bytes(b"# x y z nx ny nz q\n" + b"0.5 1.5 2.5 0 0 1 7\n1 2 3 0 0.6 0.8 255\n" * 1_250_000)
+        whole, parts = self.folder / "whole.ply", self.folder / "parts.ply"
+        run("convert", text, "-o", whole)
+        limit = 350_000_000
+        run("convert", text, "-o", parts, "--threads", 1,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+        self.assertEqual(parts.read_bytes(), whole.read_bytes())
 
 
 if __name__ == "__main__":

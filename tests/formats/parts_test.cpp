@@ -106,7 +106,57 @@ TEST_P(Parts, WriteTheBytesOfTheWhole) {
   EXPECT_FALSE(formats::create_parts(scratch.path("o.pcd"), {whole.size(), &whole, {}, false}, {}));
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, Parts, ::testing::Values("ply", "las", "laz", "copc.laz"));
+INSTANTIATE_TEST_SUITE_P(Formats, Parts,
+                         ::testing::Values("ply", "las", "laz", "copc.laz", "xyz", "csv", "pts"));
+
+TEST(PartsOfText, AreTheWholeTextOfAnyForm) {
+  const Scratch scratch;
+  for (const std::string text :
+       {"1 2 3\n4 5 6\n7 8 9\n",
+        "\xEF\xBB\xBF"
+        "1 2 3\r\n\r\n4 5 6\r\n7 8 9",
+        "1 2 3\r4 5 6\r7 8 9\r", "3\n1 2 3 0 0 1\n4 5 6 0 0 1\n# last\n7 8 9 0 1 0\n",
+        "# a\n# x y z q\n1 2 3 4\n# b\n2 2 2 2\n", "x;y;z;q\n1;2;3;4,5\n4;5;6;7\n7;8;9;\n",
+        "1 2 3\n4 5,5 6\n7 8 9\n10 11 12\n", "1,2,3\n4,5,6\n\n7,8,9\n",
+        "Nr;E;N;H;Code\nP1;1;2;3;a,b.c\nP2;4;5;6;d\nP3;7;8;9;\n",
+        "\"x\",\"y\",\"z\"\n\"1\",\"2\",\"3\"\n4,5,6\n", "x y z r g b\n1 2 3 0 1 1\n4 5 6 1 0 0\n",
+        "x y z red g b\n1 2 3 7 8 9\n",
+        "x y z red green blue label\n1 2 3 0 1 1 -1\n4 5 6 255 0 1 2\n1 1 1 0 0 0 nan\n",
+        "1 2 3 0 0 1 1 1 1 0\n4 5 6 0 1 0 255 255 0 2\n7 8 9 1 0 0 0 0 0 1\n",
+        "1 1 1 1\n2 2 2 2\n3 3 3 3\n4 4 4 4\n"}) {
+    for (const char* name : {"a.csv", "a.pts"}) {
+      const auto file = scratch.file(name, text);
+      const LoadedCloud whole = formats::read_cloud(file);
+      for (const std::size_t most : {1, 2, 3, 100}) {
+        const auto reader = formats::open_parts(file, most);
+        ASSERT_TRUE(reader) << text;
+        EXPECT_EQ(reader->warnings, whole.warnings) << text;
+        ASSERT_EQ(reader->points(), whole.cloud.size()) << text;
+        EXPECT_EQ(reader->parts(), (whole.cloud.size() + most - 1) / most) << text;
+        EXPECT_EQ(reader->read(0).comments, whole.cloud.comments);
+        const auto path = scratch.path("parts.ply"), expected = scratch.path("whole.ply");
+        copy(*reader, path);
+        formats::write_cloud(expected, whole.cloud);
+        EXPECT_EQ(bytes_of(path), bytes_of(expected)) << text << most;
+        std::filesystem::remove(path), std::filesystem::remove(expected);
+      }
+    }
+  }
+}
+
+TEST(PartsOfText, AreNoneWhereOneDoesNotShowTheColoursOrLabels) {
+  const Scratch scratch;
+  for (const std::string text :
+       {"x y z r g b\n1 2 3 0 1 1\n4 5 6 .5 0 1\n", "x y z label\n1 2 3 1\n4 5 6 1.5\n", "x y z\n",
+        "x y z red green blue\n1 2 3 0 1 1\n4 5 6 300 0 1\n",
+        "x y z red green blue r g b\n1 2 3 .1 .1 .1 1 1 1\n"}) {
+    EXPECT_FALSE(formats::open_parts(scratch.file("a.csv", text), 1)) << text;
+  }
+  EXPECT_FALSE(formats::open_parts(scratch.file("a.txt", std::string("\xFF\xFE"
+                                                                     "1\0 \0002\0 \0003\0",
+                                                                     12)),
+                                   1));
+}
 
 TEST(PartChoices, AreMadeByAllPoints) {
   const Scratch scratch;

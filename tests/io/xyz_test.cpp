@@ -215,13 +215,12 @@ TEST(Xyz, TellsProseFromNames) {
 
 std::string guess(std::size_t columns, const std::vector<double>& numbers,
                   TextKind kind = TextKind::kAny) {
-  NumberTable table(columns);
-  for (auto row = numbers.begin(); row != numbers.end();
-       row += static_cast<std::ptrdiff_t>(columns)) {
-    std::copy_n(row, columns, table.add_row());
+  TableFacts facts;
+  for (std::size_t at = 0; at < numbers.size(); at += columns) {
+    facts.add(std::span(numbers).subspan(at, columns));
   }
   std::string joined;
-  for (const std::string& name : guess_column_names(table, kind)) {
+  for (const std::string& name : guess_column_names(facts, kind)) {
     joined += (joined.empty() ? "" : " ") + name;
   }
   return joined;

@@ -104,11 +104,21 @@ void say_points(const ConvertRequest& request, std::size_t written, std::size_t 
                   request.filter.is_on() ? fmt::format(" of {}", read) : ""));
 }
 
+/// In parts a text is read twice: only where memory may not hold it.
+std::unique_ptr<io::PartReader> open_parts(const std::string& input) {
+  constexpr std::uint64_t kMostPerByte = 30;  // of memory
+  const io::InputFile file(input);
+  const bool is_text = !formats::format_of(file).begins;
+  if (is_text && file.size() < free_memory() / kMostPerByte) return nullptr;
+  const EndsAtOnce reading;
+  return formats::open_parts(input);
+}
+
 /// Converts in memory that does not grow with the file; false if one of the formats, or another
 /// option, needs the whole cloud.
 bool convert_in_parts(const ConvertRequest& request, const Common& common) {
-  if (perturbs(request)) return false;
-  const auto reader = formats::open_parts(request.input);
+  if (perturbs(request) || !formats::format_for(request.output).create_parts) return false;
+  const auto reader = open_parts(request.input);
   if (!reader) return false;
   const Progress progress = console_progress(common);
   std::optional<FilteredParts> parts;
@@ -123,7 +133,6 @@ bool convert_in_parts(const ConvertRequest& request, const Common& common) {
   const auto writer = formats::create_parts(
       request.output, outline,
       {.overwrite = common.overwrite(), .ascii = request.ascii, .progress = &progress});
-  if (!writer) return false;
   Stage stage(&progress, "convert", parts->points());
   writer->append(first);
   stage.advance(first.size());

@@ -72,6 +72,7 @@ std::vector<Format> make_formats() {
       {.name = "text",
        .extensions = {".xyz", ".txt", ".asc", ".pts", ".csv"},
        .read = io::read_xyz,
+       .open_parts = io::open_xyz_parts,
        .create_parts = io::create_xyz_parts,
        .losses =
            [](const fs::path& path, const PointCloud& cloud) {

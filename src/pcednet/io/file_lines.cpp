@@ -19,6 +19,13 @@ FileLines::FileLines(const InputFile& file) : file_(&file) {
   next_ = text_.size() - without_mark(text_).size();
 }
 
+void FileLines::go_to(const Place& place) {
+  read_ = place.byte;
+  number_ = place.lines_before;
+  text_.clear();
+  next_ = 0;
+}
+
 /// Forgets the lines that were given, and reads more of the file; false at its end.
 bool FileLines::read_more() {
   text_.erase(0, next_);

@@ -24,6 +24,15 @@ class FileLines {
   /// Number of the line that next() gave last, counted from 1.
   std::size_t number() const { return number_; }
 
+  /// Where next() goes on, in a text that is not UTF-16.
+  struct Place {
+    std::uint64_t byte = 0;
+    std::size_t lines_before = 0;
+  };
+  Place place() const { return {read_ - (text_.size() - next_), number_}; }
+  /// Goes on there, a place in the same file.
+  void go_to(const Place& place);
+
  private:
   bool read_more();
   std::size_t find_end(std::size_t from);

@@ -24,6 +24,11 @@ namespace pcednet::io {
 /// fit the others.
 LoadedCloud read_xyz(const InputFile& file);
 
+/// The same in parts of `most` points. It reads the whole file once, to find the parts and the
+/// columns. Null for UTF-16, and where a part alone does not show the colours and labels: those
+/// that are not whole numbers in 0 ... 255.
+std::unique_ptr<PartReader> open_xyz_parts(std::unique_ptr<InputFile> file, std::size_t most);
+
 /// Whether a text begins as read_xyz() reads one: after comments, a count of points or names of
 /// columns with x, y and z, with at least three numbers in a line. True as well where that cannot
 /// be told from its first 64 KiB.

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "pcednet/io/promote.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {
@@ -62,39 +63,6 @@ std::size_t find_first(const std::vector<std::string>& names,
     if (found < names.size()) return found;
   }
   return names.size();
-}
-
-/// Whether `holds(row)` is true in all rows, of which there is at least one.
-template <typename Predicate>
-bool in_all_rows(const NumberTable& table, Predicate&& holds) {
-  for (std::size_t r = 0; r < table.rows(); ++r) {
-    if (!holds(table.row(r))) return false;
-  }
-  return table.rows() > 0;
-}
-
-bool are_normals(const NumberTable& table, std::size_t first) {
-  std::size_t unit = 0;
-  for (std::size_t r = 0; r < table.rows(); ++r) {
-    if (looks_like_normal(table.row(r) + first)) ++unit;
-  }
-  return unit > 0 && 10 * unit >= 9 * table.rows();
-}
-
-bool are_colours(const NumberTable& table, std::size_t first) {
-  return in_all_rows(table, [&](const double* row) {
-    for (std::size_t c = first; c < first + 3; ++c) {
-      if (!(row[c] >= 0.0 && row[c] <= 255.0 && row[c] == std::floor(row[c]))) return false;
-    }
-    return true;
-  });
-}
-
-bool is_label(const NumberTable& table, std::size_t column) {
-  return in_all_rows(table, [&](const double* row) {
-    const double value = row[column];
-    return value == 0.0 || value == 1.0 || value == 2.0 || value == 255.0;
-  });
 }
 
 }  // namespace
@@ -177,31 +145,49 @@ bool looks_like_normal(const double* n) {
   return length > 0.9 && length < 1.1;
 }
 
-bool counts_rows(const NumberTable& table) {
-  double next = table.rows() > 3 ? std::floor(*table.row(0)) : NAN;
-  return in_all_rows(table, [&](const double* row) { return row[0] == next++; });
+void TableFacts::add(std::span<const double> row) {
+  columns_.resize(row.size());
+  if (rows_++ == 0) next_ = std::floor(row[0]);
+  counts_ = counts_ && row[0] == next_++;
+  for (std::size_t c = 0; c < row.size(); ++c) {
+    Column& column = columns_[c];
+    const double value = row[c];
+    const bool is_byte = value >= 0.0 && value <= 255.0 && value == std::floor(value);
+    column.are_up_to_one = column.are_up_to_one && !(value > 1.0);
+    column.are_bytes = column.are_bytes && is_byte;
+    column.are_labels = column.are_labels && (is_byte || to_label(value));
+    column.are_classes = column.are_classes && is_byte && (value <= 2.0 || value == 255.0);
+    column.unit += c + 3 <= row.size() && looks_like_normal(&row[c]);
+  }
 }
 
-std::vector<std::string> guess_column_names(const NumberTable& table, TextKind kind) {
+bool TableFacts::are_normals(std::size_t first) const {
+  return columns_[first].unit > 0 && 10 * columns_[first].unit >= 9 * rows_;
+}
+
+std::vector<std::string> guess_column_names(const TableFacts& facts, TextKind kind) {
   std::vector<std::string> names = {"x", "y", "z"};
+  const auto are_colours = [&](std::size_t first) {
+    return facts.are_bytes(first) && facts.are_bytes(first + 1) && facts.are_bytes(first + 2);
+  };
   bool has_normals = false, has_colours = false;
-  while (names.size() < table.columns()) {
+  while (names.size() < facts.columns()) {
     const std::size_t next = names.size();
-    const std::size_t left = table.columns() - next;
+    const std::size_t left = facts.columns() - next;
     // x y z intensity r g b, the usual .pts: four columns of which three are colours either way.
     const bool is_counted = kind == TextKind::kCountedPts;
-    const bool may_be_label = !is_counted && is_label(table, table.columns() - 1);
-    const bool scalar_first = left == 4 && are_colours(table, next + 1) && !may_be_label;
+    const bool may_be_label = !is_counted && facts.are_classes(facts.columns() - 1);
+    const bool scalar_first = left == 4 && are_colours(next + 1) && !may_be_label;
     const bool is_alone = left == 1 && !may_be_label;
     if (kind != TextKind::kAny && next == 3 && (scalar_first || is_alone)) {
       names.emplace_back("intensity");
-    } else if (left >= 3 && !has_normals && are_normals(table, next)) {
+    } else if (left >= 3 && !has_normals && facts.are_normals(next)) {
       names.insert(names.end(), {"nx", "ny", "nz"});
       has_normals = true;
-    } else if (left >= 3 && !has_colours && !scalar_first && are_colours(table, next)) {
+    } else if (left >= 3 && !has_colours && !scalar_first && are_colours(next)) {
       names.insert(names.end(), {"red", "green", "blue"});
       has_colours = true;
-    } else if (left == 1 && is_label(table, next)) {
+    } else if (left == 1 && facts.are_classes(next)) {
       names.emplace_back("label");
     } else {
       names.push_back(fmt::format("scalar_{}", next + 1));

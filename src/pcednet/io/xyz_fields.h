@@ -1,10 +1,11 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "pcednet/io/number_table.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {
@@ -39,8 +40,33 @@ bool name_positions(std::vector<std::string>& names);
 /// Whether the vector at `n` has about unit length.
 bool looks_like_normal(const double* n);
 
-/// Whether the first column is n, n + 1, n + 2, ... in four rows or more.
-bool counts_rows(const NumberTable& table);
+/// The values in the columns of a table, row by row.
+class TableFacts {
+ public:
+  void add(std::span<const double> row);
+
+  std::size_t columns() const { return columns_.size(); }
+  /// Of a column: whether no number is above 1; whether there are rows, and all hold whole numbers
+  /// in 0 ... 255; those or other labels, see to_label(); 0, 1, 2 and 255 alone.
+  bool are_up_to_one(std::size_t column) const { return columns_[column].are_up_to_one; }
+  bool are_bytes(std::size_t column) const { return rows_ > 0 && columns_[column].are_bytes; }
+  bool are_labels(std::size_t column) const { return rows_ > 0 && columns_[column].are_labels; }
+  bool are_classes(std::size_t column) const { return rows_ > 0 && columns_[column].are_classes; }
+  /// Whether three columns are unit vectors in nine rows of ten.
+  bool are_normals(std::size_t first) const;
+  /// Whether the first column is n, n + 1, n + 2, ... in four rows or more.
+  bool counts_rows() const { return rows_ > 3 && counts_; }
+
+ private:
+  struct Column {
+    bool are_up_to_one = true, are_bytes = true, are_labels = true, are_classes = true;
+    std::size_t unit = 0;  ///< vectors that begin here
+  };
+  std::vector<Column> columns_ = {};
+  std::size_t rows_ = 0;
+  bool counts_ = true;
+  double next_ = 0.0;
+};
 
 /// The columns of a text file, guessed from its extension and first line.
 enum class TextKind { kAny, kPts, kCountedPts };
@@ -50,7 +76,7 @@ enum class TextKind { kAny, kPts, kCountedPts };
 /// only 0, 1, 2 and 255 is the label; any other column c (from 1) is scalar_c. In a .pts the fourth
 /// is the intensity if it stands alone or before colours; where the file begins with a count, as it
 /// should, even if it or the last channel could be labels.
-std::vector<std::string> guess_column_names(const NumberTable& table,
+std::vector<std::string> guess_column_names(const TableFacts& facts,
                                             TextKind kind = TextKind::kAny);
 
 }  // namespace pcednet::io

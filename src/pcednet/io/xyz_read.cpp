@@ -1,44 +1,23 @@
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
-#include <limits>
-#include <optional>
+#include <cstring>
+#include <iterator>
+#include <utility>
 
 #include "pcednet/io/cloud_builder.h"
-#include "pcednet/io/file_lines.h"
+#include "pcednet/io/promote.h"
+#include "pcednet/io/row_feeder.h"
+#include "pcednet/io/scanners.h"
 #include "pcednet/io/text_scan.h"
 #include "pcednet/io/xyz.h"
 #include "pcednet/io/xyz_fields.h"
+#include "pcednet/io/xyz_table.h"
 
 namespace pcednet::io {
 namespace {
 
-constexpr std::size_t kMostColumns = 16384;
-
-constexpr Separators kCommasAndSemicolons{",;"}, kSemicolons{";"};
 /// A table of quoted numbers is one of points, too, though read_xyz() refuses it without quoted
 /// names.
 constexpr Separators kAroundNumbers{" \t\r\v\f,;\""};
-
-/// The line without the quotes around its numbers. Others stay, so that the error shows them: a
-/// comma between quotes may be decimal.
-std::string without_quotes(std::string_view line) {
-  std::string plain;
-  std::size_t at = 0;
-  for (;;) {
-    const std::size_t begin = line.find('"', at);
-    const std::size_t end = begin == std::string_view::npos ? begin : line.find('"', begin + 1);
-    if (end == std::string_view::npos) return plain.append(line.substr(at));
-    const bool is_apart = (begin == 0 || kNumberSeparators(line[begin - 1])) &&
-                          (end + 1 == line.size() || kNumberSeparators(line[end + 1]));
-    const std::string_view word = trim(line.substr(begin + 1, end - begin - 1));
-    const bool is_number = is_apart && parse_double(word);
-    plain.append(line.substr(at, begin - at));
-    plain.append(is_number ? word : line.substr(begin, end + 1 - begin));
-    at = end + 1;
-  }
-}
 
 bool is_number(std::string_view word) {
   return parse_double(word).has_value();
@@ -50,260 +29,124 @@ bool may_be_point(const std::vector<std::string_view>& words, bool named) {
   return words.size() >= 3 && std::all_of(words.begin(), words.begin() + 3, is_number);
 }
 
-class TableReader {
- public:
-  explicit TableReader(const InputFile& file) : path_(file.path()), lines_(file) {}
+/// The columns with these names, the first of each; fewer if one is missing.
+std::vector<std::size_t> columns_called(const std::vector<std::string>& names,
+                                        const std::vector<Column>& columns) {
+  std::vector<std::size_t> found;
+  for (const std::string& name : names) {
+    const auto is_it = [&](const Column& c) { return !c.skip && lower_case(c.name) == name; };
+    const auto column = std::ranges::find_if(columns, is_it);
+    if (column != columns.end()) {
+      found.push_back(static_cast<std::size_t>(column - columns.begin()));
+    }
+  }
+  return found;
+}
 
-  LoadedCloud read() {
-    std::string_view line;
-    while (lines_.next(line)) {
-      line = trim(line);
-      if (line.empty()) continue;
-      number_ = lines_.number();
-      if (quoted_ && !is_comment(line)) line = plain_ = without_quotes(line);
-      if (is_comment(line)) {
-        take_comment(trim(line.substr(std::min(line.find_first_not_of("#/"), line.size()))));
-      } else if (table_.columns() > 0) {
-        take_row(line);
-      } else {
-        take_first(line);
-      }
+/// Makes bytes of colours that may not look so in a part of the rows; false if a part may give
+/// other colours or labels than all rows.
+bool settle_roles(const TableFacts& facts, std::vector<Column>& columns) {
+  for (const std::size_t c : columns_called(label_names(), columns)) {
+    if (!facts.are_labels(c)) return false;
+  }
+  for (const std::vector<std::string>& names : colour_names()) {
+    const std::vector<std::size_t> colours = columns_called(names, columns);
+    if (colours.size() < names.size()) continue;
+    const auto are_bytes = [&](std::size_t c) { return facts.are_bytes(c); };
+    const auto are_unit = [&](std::size_t c) { return facts.are_up_to_one(c); };
+    if (!std::ranges::all_of(colours, are_bytes)) return false;
+    if (std::ranges::all_of(colours, are_unit)) return true;  // in every part, too
+    for (const std::size_t c : colours) columns[c].type = ScalarType::kUint8;
+    return true;
+  }
+  return true;
+}
+
+void put_row(const double* numbers, const std::vector<Column>& columns, std::byte* row) {
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (columns[c].type == ScalarType::kUint8) {
+      *row++ = static_cast<std::byte>(numbers[c]);
+    } else {
+      std::memcpy(row, &numbers[c], sizeof(double));
+      row += sizeof(double);
     }
-    if (promised_ && *promised_ != table_.rows()) {
-      throw unreadable(path_,
-                       fmt::format("declares {} points but holds {}", *promised_, table_.rows()));
+  }
+}
+
+class XyzPartReader : public PartReader {
+ public:
+  /// Reads the whole file, to find the parts and what their columns are.
+  XyzPartReader(std::unique_ptr<InputFile> file, std::size_t most)
+      : file_(std::move(file)), reader_(*file_), most_(most) {
+    TableFacts facts;
+    while (reader_.next_row()) {
+      NumberTable& table = reader_.table();
+      if (reader_.place().before % most_ == 0) places_.push_back(reader_.place());
+      facts.add({table.row(table.rows() - 1), table.columns()});
+      if (table.rows() == kRowsAtOnce) table = NumberTable(table.columns());
     }
-    return build();
+    columns_ = reader_.columns(facts);
+    warnings = reader_.warnings();
+    readable_ = settle_roles(facts, columns_);
+    reader_.table() = NumberTable(columns_.size());
+  }
+
+  bool readable() const { return readable_; }
+  std::size_t points() const override { return reader_.rows(); }
+  std::size_t parts() const override { return places_.size(); }
+
+  PointCloud read(std::size_t part) const override {
+    TableReader reader = reader_;
+    reader.go_to(places_[part]);
+    const std::size_t rows = std::min(most_, points() - places_[part].before);
+    while (reader.table().rows() < rows && reader.next_row()) continue;
+    if (reader.table().rows() < rows) throw unreadable(file_->path(), "is shorter than before");
+    CloudBuilder builder(file_->path(), columns_, rows);
+    RowFeeder feeder(builder);
+    for (std::size_t r = 0; r < rows; ++r) {
+      put_row(reader.table().row(r), columns_, feeder.next_row());
+    }
+    feeder.flush();
+    PointCloud cloud = builder.finish().cloud;
+    if (part == 0) {
+      cloud.comments = reader_.comments();
+      cloud.scanners = scanners_of_comments(cloud.comments);
+    }
+    return cloud;
   }
 
  private:
-  Error error(const std::string& what) const { return unreadable(path_, what, number_); }
+  static constexpr std::size_t kRowsAtOnce = 1 << 14;
 
-  void take_comment(std::string_view comment) {
-    std::vector<std::string> names = split_names(comment);
-    if (table_.columns() == 0 && names_.empty() && name_positions(names)) {
-      names_ = std::move(names);
-      naming_comment_ = comment;
-    } else {
-      comments_.emplace_back(comment);
-    }
-  }
-
-  /// A line before the first point: a count, names, or the first point.
-  void take_first(std::string_view line) {
-    split(line, words_, kNumberSeparators);
-    if (take_count()) return;
-    if (names_.empty() && (words_.empty() || !is_number(words_[0]))) {
-      names_ = split_names(line);
-      quoted_ = line.find('"') != std::string_view::npos;
-      if (name_positions(names_)) return;
-      throw error(
-          "expected numbers, or names of columns with x, y and z (easting, northing and height) "
-          "among them");
-    }
-    decide_on_commas(line);
-    split_row(line);
-    if (words_.size() - empty_words() < 3) throw error("expected at least three numbers");
-    if (words_.size() > kMostColumns) {
-      throw error(fmt::format("{} numbers: at most {} are read", words_.size(), kMostColumns));
-    }
-    if (!naming_comment_.empty() && names_.size() != words_.size()) {
-      comments_.push_back(naming_comment_);  // prose that happens to hold x, y and z
-      names_.clear();
-    }
-    // A separator at the end of a line begins no column, unless that has a name.
-    const bool has_end = words_.back().empty() || names_.size() == words_.size() + 1;
-    if (has_end && !names_.empty() && names_.back().empty()) names_.pop_back();
-    if (words_.back().empty() && names_.size() < words_.size()) words_.pop_back();
-    if (!names_.empty() && names_.size() != words_.size()) {
-      throw error(fmt::format("{} numbers under {} names", words_.size(), names_.size()));
-    }
-    table_ = NumberTable(words_.size());
-    find_text();
-    take_row(line);
-  }
-
-  /// Named columns, other than positions, whose first word is no number.
-  void find_text() {
-    is_text_.assign(words_.size(), false);
-    for (std::size_t c = 0; c < names_.size(); ++c) {
-      const bool is_position = names_[c] == "x" || names_[c] == "y" || names_[c] == "z";
-      is_text_[c] = !is_position && !number_of(words_[c]);
-    }
-  }
-
-  /// Takes the words for the count of the points that follow, if they can be that: at the
-  /// beginning, and behind the points of the count before, where a .pts has its next scan.
-  bool take_count() {
-    if (words_.size() != 1 || promised_.value_or(0) != table_.rows()) return false;
-    const auto count = parse_count(words_[0]);
-    if (!count || *count > UINT64_MAX - table_.rows()) return false;
-    promised_ = table_.rows() + *count;
-    return true;
-  }
-
-  /// From the first line with commas on, the first unambiguous one decides for the file.
-  void decide_on_commas(std::string_view line) {
-    if (commas_ != Commas::kNone) return;
-    if (line.find(',') == std::string_view::npos) {
-      if (line_with_point_ == 0 && line.find('.') != line.npos) line_with_point_ = number_;
-      return;
-    }
-    FileLines after = lines_;
-    deciding_line_ = number_;
-    do {
-      line = trim(line);
-      commas_ = is_comment(line) ? Commas::kNone : commas_of(line);
-      if (commas_ == Commas::kDecimals || commas_ == Commas::kSeparators) break;
-      deciding_line_ = after.next(line) ? after.number() : 0;
-    } while (deciding_line_ != 0);
-    if (deciding_line_ == 0) {
-      throw error(
-          "these commas may be decimal or stand between numbers: separate the numbers by "
-          "semicolons, or write decimal points");
-    }
-    if (commas_ == Commas::kSeparators || line_with_point_ == 0) return;
-    number_ = line_with_point_;
-    throw decimal_points();
-  }
-
-  Error decimal_points() const {
-    return error(fmt::format("decimal points, where line {} has decimal commas", deciding_line_));
-  }
-
-  void split_row(std::string_view line) {
-    split_fields(line, commas_ == Commas::kDecimals ? kSemicolons : kCommasAndSemicolons, words_);
-  }
-
-  /// The numbers of a row between texts, whose commas and points mean nothing; empty without texts.
-  std::string beside_text() const {
-    std::string numbers;
-    if (std::ranges::count(is_text_, true) == 0 || words_.size() != is_text_.size()) return numbers;
-    for (std::size_t c = 0; c < words_.size(); ++c) {
-      if (!is_text_[c]) numbers.append(words_[c]) += commas_ == Commas::kDecimals ? ';' : ',';
-    }
-    return numbers;
-  }
-
-  std::size_t empty_words() const {
-    return static_cast<std::size_t>(std::count(words_.begin(), words_.end(), std::string_view()));
-  }
-
-  void check_commas(std::string_view line) const {
-    const bool in_doubt = commas_ == Commas::kDecimals
-                              ? line.find_first_of(",.") != std::string_view::npos
-                              : line.find_first_of(" \t;") != std::string_view::npos;
-    if (commas_ == Commas::kNone || !in_doubt) return;
-    const Commas here = commas_of(line);
-    if (commas_ == Commas::kDecimals &&
-        (here == Commas::kSeparators || line.find('.') != std::string_view::npos)) {
-      const bool has_points = line.find('.') != std::string_view::npos;
-      if (has_points && deciding_line_ == number_) {
-        const bool is_english = line.find(',') < line.find('.');
-        throw error(is_english ? "commas and decimal points: write no commas between thousands"
-                               : "points and decimal commas: write no points between thousands");
-      }
-      if (has_points) throw decimal_points();
-      throw error(
-          fmt::format("commas between numbers, where line {} has decimal commas", deciding_line_));
-    }
-    if (commas_ == Commas::kSeparators && here == Commas::kDecimals) {
-      throw error(
-          fmt::format("decimal commas, where those of line {} separate numbers", deciding_line_));
-    }
-  }
-
-  std::optional<double> number_of(std::string_view word) const {
-    if (word.empty()) return std::numeric_limits<double>::quiet_NaN();
-    if (commas_ != Commas::kDecimals) return parse_double(word);
-    std::string with_point(word);
-    std::replace(with_point.begin(), with_point.end(), ',', '.');
-    return parse_double(with_point);
-  }
-
-  void take_row(std::string_view line) {
-    decide_on_commas(line);
-    split_row(line);
-    const std::string numbers = beside_text();
-    check_commas(numbers.empty() ? line : numbers);
-    if (promised_ && take_count()) return;
-    if (words_.size() == table_.columns() + 1 && words_.back().empty()) words_.pop_back();
-    if (words_.size() != table_.columns()) {
-      throw error(fmt::format("{} number{} where the lines before have {}", words_.size(),
-                              words_.size() == 1 ? "" : "s", table_.columns()));
-    }
-    if (empty_words() == words_.size()) return;  // as spreadsheets end a table
-    double* const row = table_.add_row();
-    for (std::size_t c = 0; c < words_.size(); ++c) {
-      if (is_text_[c]) continue;
-      empty_ += words_[c].empty();
-      const auto number = number_of(words_[c]);
-      if (!number) throw error(number_fault(words_[c]));
-      row[c] = *number;
-    }
-  }
-
-  LoadedCloud build() {
-    const bool guessed = names_.empty();
-    if (guessed) names_ = guess_column_names(table_, kind());
-    is_text_.resize(names_.size());
-    std::vector<Column> columns;
-    std::vector<std::string> of_text;
-    for (std::size_t c = 0; c < names_.size(); ++c) {
-      columns.push_back({names_[c].empty() ? fmt::format("scalar_{}", c + 1) : names_[c]});
-      columns[c].skip = is_text_[c];
-      if (is_text_[c]) of_text.push_back(columns[c].name);
-    }
-    const bool is_numbered = guessed && counts_rows(table_);
-    CloudBuilder builder(path_, columns, table_.rows());
-    table_.move_to(builder);
-    LoadedCloud loaded = builder.finish();
-    loaded.cloud.comments = std::move(comments_);
-    if (empty_ > 0) {
-      loaded.warnings.push_back(
-          fmt::format("{} numbers are missing between separators: read as nan", empty_));
-    }
-    if (!of_text.empty()) {
-      loaded.warnings.push_back(
-          fmt::format("columns of text are left out: {}", fmt::join(of_text, ", ")));
-    }
-    if (guessed && table_.columns() > 3) {
-      loaded.warnings.push_back(fmt::format("no column names: read as {}{}", fmt::join(names_, " "),
-                                            is_numbered
-                                                ? ", although the first column numbers the points; "
-                                                  "give names, such as: id x y z"
-                                                : ""));
-    }
-    return loaded;
-  }
-
-  TextKind kind() const {
-    if (extension_of(path_) != ".pts") return TextKind::kAny;
-    return promised_ ? TextKind::kCountedPts : TextKind::kPts;
-  }
-
-  const std::filesystem::path& path_;
-  FileLines lines_;
-  std::size_t number_ = 0;
-  std::vector<std::string> names_;
-  std::string naming_comment_;  ///< the comment that the names come from, if they do
-  bool quoted_ = false;         ///< the line of names has quotes, so that numbers may have them
-  std::string plain_;           ///< the line at hand without them
-  std::vector<std::string> comments_;
-  std::vector<std::string_view> words_;
-  std::optional<std::uint64_t> promised_;
-  Commas commas_ = Commas::kNone;  ///< those of all lines
-  std::size_t deciding_line_ = 0;
-  std::size_t line_with_point_ = 0;  ///< the first, before commas
-  std::vector<bool> is_text_;        ///< columns
-  std::size_t empty_ = 0;            ///< numbers that are missing
-  NumberTable table_;
+  std::unique_ptr<InputFile> file_;
+  TableReader reader_;  ///< at the end
+  std::size_t most_;
+  std::vector<Column> columns_ = {};
+  std::vector<TableReader::Place> places_ = {};
+  bool readable_ = false;
 };
 
 }  // namespace
 
 LoadedCloud read_xyz(const InputFile& file) {
-  return TableReader(file).read();
+  TableReader reader(file);
+  while (reader.next_row()) continue;
+  NumberTable& table = reader.table();
+  TableFacts facts;
+  const std::size_t guessed = reader.is_named() ? 0 : table.rows();
+  for (std::size_t r = 0; r < guessed; ++r) facts.add({table.row(r), table.columns()});
+  CloudBuilder builder(file.path(), reader.columns(facts), table.rows());
+  table.move_to(builder);
+  LoadedCloud loaded = builder.finish();
+  loaded.cloud.comments = reader.comments();
+  std::ranges::copy(reader.warnings(), std::back_inserter(loaded.warnings));
+  return loaded;
+}
+
+std::unique_ptr<PartReader> open_xyz_parts(std::unique_ptr<InputFile> file, std::size_t most) {
+  if (is_utf16(file->text(0, 2))) return nullptr;
+  auto reader = std::make_unique<XyzPartReader>(std::move(file), most);
+  return reader->readable() ? std::move(reader) : nullptr;
 }
 
 bool begins_as_points(const InputFile& file) {
