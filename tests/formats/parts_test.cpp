@@ -118,6 +118,7 @@ TEST(PartsOfText, AreTheWholeTextOfAnyForm) {
         "1 2 3\r4 5 6\r7 8 9\r", "3\n1 2 3 0 0 1\n4 5 6 0 0 1\n# last\n7 8 9 0 1 0\n",
         "# a\n# x y z q\n1 2 3 4\n# b\n2 2 2 2\n", "x;y;z;q\n1;2;3;4,5\n4;5;6;7\n7;8;9;\n",
         "1 2 3\n4 5,5 6\n7 8 9\n10 11 12\n", "1,2,3\n4,5,6\n\n7,8,9\n",
+        "Nr;E;N;H;Code\n1;1;2;3;\n2;4;5;6;\n3;7;8;9;a b\n",
         "Nr;E;N;H;Code\nP1;1;2;3;a,b.c\nP2;4;5;6;d\nP3;7;8;9;\n",
         "\"x\",\"y\",\"z\"\n\"1\",\"2\",\"3\"\n4,5,6\n", "x y z r g b\n1 2 3 0 1 1\n4 5 6 1 0 0\n",
         "x y z red g b\n1 2 3 7 8 9\n",

@@ -190,6 +190,16 @@ TEST(Xyz, LeavesOutNamedColumnsOfText) {
         << text;
     EXPECT_NE(begins_as_points(InputFile(scratch.path("a.csv"))), *text == '#') << text;
   }
+  // Later words of the first empty ones, with blanks, points and commas in them.
+  for (const char* text : {"Nr,E,N,H,Code\n1,1,2,3,\n2,4,5,6,top of kerb\n",
+                           "Nr;E;N;H;Code\n1;1,0;2;3;\n2;4;5;6;kerb, 1.5 m\n",
+                           "Nr\tE\tN\tH\tCode\n1\t1\t2\t3\ta b c\n2\t4\t5\t6\t\n",
+                           "Nr\tE\tN\tH\tCode\r\n1\t1\t2\t3\t\r\n\t4\t5\t6\t1 b\r\n\t\t\t\t\r\n"}) {
+    const auto loaded = scratch.read("a.csv", text);
+    EXPECT_EQ(loaded.cloud.positions, (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}})) << text;
+    EXPECT_EQ(loaded.cloud.attributes.size(), 1u) << text;
+    EXPECT_EQ(loaded.warnings.back(), "columns of text are left out: Code") << text;
+  }
   for (const char* text : {"P1 1 2 3\n", "Nr x y z\n1 a 2 3\n", "Nr x y z\n1 1 2 3\nP2 4 5 6\n"}) {
     EXPECT_TRUE(contains(error_of(ErrorKind::kUnreadable, [&] { scratch.read("a.txt", text); }),
                          "expected"))

@@ -44,7 +44,7 @@ bool TableReader::next_row() {
       if (!promised_ || *promised_ == rows_) return false;
       throw unreadable(path_, fmt::format("declares {} points but holds {}", *promised_, rows_));
     }
-    take_line(trim(line));
+    take_line(line);
   }
   return true;
 }
@@ -56,7 +56,9 @@ void TableReader::go_to(const Place& place) {
 }
 
 void TableReader::take_line(std::string_view line) {
-  if (line.empty()) return;
+  const std::string_view text = trim(line);
+  if (text.empty()) return;
+  if (separator_ != '\t' || is_comment(text)) line = text;  // else a tab ends a missing entry
   number_ = lines_.number();
   if (quoted_ && !is_comment(line)) line = plain_ = without_quotes(line);
   if (is_comment(line)) {
@@ -73,6 +75,7 @@ void TableReader::take_comment(std::string_view comment) {
   if (table_.columns() == 0 && names_.empty() && name_positions(names)) {
     names_ = std::move(names);
     naming_comment_ = comment;
+    note_names(comment);
   } else {
     comments_.emplace_back(comment);
   }
@@ -84,6 +87,7 @@ void TableReader::take_first(std::string_view line) {
   if (take_count()) return;
   if (names_.empty() && (words_.empty() || !parse_double(words_[0]))) {
     names_ = split_names(line);
+    note_names(line);
     quoted_ = line.find('"') != std::string_view::npos;
     if (name_positions(names_)) return;
     throw error(
@@ -108,16 +112,25 @@ void TableReader::take_first(std::string_view line) {
     throw error(fmt::format("{} numbers under {} names", words_.size(), names_.size()));
   }
   table_ = NumberTable(words_.size());
-  find_text();
+  entries_.assign(words_.size(), {.are_numbers = names_.empty()});
+  for (std::size_t c = 0; c < names_.size(); ++c) {
+    entries_[c].are_numbers = names_[c] == "x" || names_[c] == "y" || names_[c] == "z";
+  }
   take_row(line);
 }
 
-/// Named columns, other than positions, whose first word is no number.
-void TableReader::find_text() {
-  is_text_.assign(words_.size(), false);
-  for (std::size_t c = 0; c < names_.size(); ++c) {
-    const bool is_position = names_[c] == "x" || names_[c] == "y" || names_[c] == "z";
-    is_text_[c] = !is_position && !number_of(words_[c]);
+void TableReader::note_names(std::string_view line) {
+  const std::size_t first = line.find_first_of(";,\t");
+  separator_ = first == std::string_view::npos ? '\0' : line[first];
+}
+
+/// A column is of text if the first word in it is no number.
+void TableReader::mark_text() {
+  if (words_.size() != entries_.size()) return;
+  for (std::size_t c = 0; c < words_.size(); ++c) {
+    Entries& entries = entries_[c];
+    if (entries.are_numbers || entries.are_text || words_[c].empty()) continue;
+    (number_of(words_[c]) ? entries.are_numbers : entries.are_text) = true;
   }
 }
 
@@ -162,14 +175,26 @@ Error TableReader::decimal_points() const {
 
 void TableReader::split_row(std::string_view line) {
   split_fields(line, commas_ == Commas::kDecimals ? kSemicolons : kCommasAndSemicolons, words_);
+  if (separator_ == 0 || (separator_ != '\t' && words_.size() == names_.size())) return;
+  // A text may hold blanks, and between tabs it may be missing: what separates names may alone fit.
+  const auto words = static_cast<std::size_t>(std::ranges::count(line, separator_)) + 1;
+  if (words != names_.size()) return;
+  words_.clear();
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(separator_, begin), line.size());
+    words_.push_back(trim(line.substr(begin, end - begin)));
+    begin = end + 1;
+  }
 }
 
 /// The numbers of a row between texts, whose commas and points mean nothing; empty without texts.
 std::string TableReader::beside_text() const {
   std::string numbers;
-  if (std::ranges::count(is_text_, true) == 0 || words_.size() != is_text_.size()) return numbers;
+  if (words_.size() != entries_.size()) return numbers;
+  if (std::ranges::none_of(entries_, &Entries::are_text)) return numbers;
   for (std::size_t c = 0; c < words_.size(); ++c) {
-    if (!is_text_[c]) numbers.append(words_[c]) += commas_ == Commas::kDecimals ? ';' : ',';
+    if (!entries_[c].are_text)
+      numbers.append(words_[c]) += commas_ == Commas::kDecimals ? ';' : ',';
   }
   return numbers;
 }
@@ -213,6 +238,7 @@ std::optional<double> TableReader::number_of(std::string_view word) const {
 void TableReader::take_row(std::string_view line) {
   decide_on_commas(line);
   split_row(line);
+  mark_text();
   const std::string numbers = beside_text();
   check_commas(numbers.empty() ? line : numbers);
   if (promised_ && take_count()) return;
@@ -225,8 +251,8 @@ void TableReader::take_row(std::string_view line) {
   double* const row = table_.add_row();
   ++rows_;
   for (std::size_t c = 0; c < words_.size(); ++c) {
-    if (is_text_[c]) continue;
-    empty_ += words_[c].empty();
+    if (entries_[c].are_text) continue;
+    entries_[c].missing += words_[c].empty();
     const auto number = number_of(words_[c]);
     if (!number) throw error(number_fault(words_[c]));
     row[c] = *number;
@@ -239,18 +265,20 @@ TextKind TableReader::kind() const {
 }
 
 std::vector<Column> TableReader::columns(const TableFacts& facts) {
-  if (empty_ > 0) {
+  std::size_t missing = 0;
+  for (const Entries& entries : entries_) missing += entries.are_text ? 0 : entries.missing;
+  if (missing > 0) {
     warnings_.push_back(
-        fmt::format("{} numbers are missing between separators: read as nan", empty_));
+        fmt::format("{} numbers are missing between separators: read as nan", missing));
   }
   if (names_.empty()) guess_names(facts);
-  is_text_.resize(names_.size());
+  entries_.resize(names_.size());
   std::vector<Column> columns;
   std::vector<std::string> of_text;
   for (std::size_t c = 0; c < names_.size(); ++c) {
     columns.push_back({names_[c].empty() ? fmt::format("scalar_{}", c + 1) : names_[c]});
-    columns[c].skip = is_text_[c];
-    if (is_text_[c]) of_text.push_back(columns[c].name);
+    columns[c].skip = entries_[c].are_text;
+    if (entries_[c].are_text) of_text.push_back(columns[c].name);
   }
   if (!of_text.empty()) {
     warnings_.push_back(fmt::format("columns of text are left out: {}", fmt::join(of_text, ", ")));

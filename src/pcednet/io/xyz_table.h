@@ -51,7 +51,8 @@ class TableReader {
   void take_line(std::string_view line);
   void take_comment(std::string_view comment);
   void take_first(std::string_view line);
-  void find_text();
+  void note_names(std::string_view line);
+  void mark_text();
   bool take_count();
   void decide_on_commas(std::string_view line);
   Error decimal_points() const;
@@ -69,6 +70,7 @@ class TableReader {
   std::size_t number_ = 0;
   std::vector<std::string> names_ = {};
   std::string naming_comment_ = {};  ///< the comment that the names come from, if they do
+  char separator_ = 0;               ///< between the names; 0: blanks
   bool quoted_ = false;     ///< the line of names has quotes, so that numbers may have them
   std::string plain_ = {};  ///< the line at hand without them
   std::vector<std::string> comments_ = {}, warnings_ = {};
@@ -77,8 +79,12 @@ class TableReader {
   Commas commas_ = Commas::kNone;  ///< those of all lines
   std::size_t deciding_line_ = 0;
   std::size_t line_with_point_ = 0;  ///< the first, before commas
-  std::vector<bool> is_text_ = {};   ///< columns
-  std::size_t empty_ = 0;            ///< numbers that are missing
+  /// The words of a column.
+  struct Entries {
+    bool are_numbers = false, are_text = false;  ///< neither: none is there so far
+    std::size_t missing = 0;
+  };
+  std::vector<Entries> entries_ = {};
   NumberTable table_ = NumberTable(0);
   std::size_t rows_ = 0;
   Place place_ = {};
