@@ -116,7 +116,7 @@ def elbow():
     (a, along_a), (b, along_b) = ends
     pipe = lambda radius: Part.Wire(arc).makePipe(Part.Face(Part.Wire(Part.makeCircle(radius, a, along_a))))
     part = pipe(10).fuse(Part.makeCylinder(16, 4, a - along_a * 4, along_a)).fuse(Part.makeCylinder(16, 4, b, along_b))
-    return cut(part, pipe(8), Part.makeCylinder(8, 8, a - along_a * 6, along_a), Part.makeCylinder(8, 8, b - along_b * 2, along_b))
+    return cut(part, pipe(8), Part.makeCylinder(8, 6, a - along_a * 6, along_a), Part.makeCylinder(8, 6, b, along_b))
 
 
 def blades():
