@@ -232,37 +232,12 @@ void add(const io::E57Document& document, Lines& lines) {
   }
 }
 
-/// The names of the codes by the standard; those from 8 on depend on the point format.
-std::map<int, const char*> las_classes(unsigned point_format) {
-  std::map<int, const char*> names = {
-      {0, " never classified"}, {1, " unassigned"},        {2, " ground"},
-      {3, " low vegetation"},   {4, " medium vegetation"}, {5, " high vegetation"},
-      {6, " building"},         {7, " low noise"},         {9, " water"},
-      {18, " high noise"}};
-  if (point_format < 6) {
-    names.insert({{8, " model key point"}, {12, " overlap"}});
-    return names;
-  }
-  names.insert({{10, " rail"},
-                {11, " road surface"},
-                {13, " guard wire"},
-                {14, " conductor wire"},
-                {15, " transmission tower"},
-                {16, " wire connector"},
-                {17, " bridge deck"},
-                {19, " overhead structure"},
-                {20, " ignored ground"},
-                {21, " snow"},
-                {22, " temporal exclusion"}});
-  return names;
-}
-
-std::string text_of(const std::map<int, std::size_t>& counts,
-                    const std::map<int, const char*>& names) {
+template <typename NameOf>
+std::string text_of(const std::map<int, std::size_t>& counts, const NameOf& name_of) {
   std::vector<std::string> parts;
   for (const auto& [value, count] : counts) {
-    const auto name = names.find(value);
-    parts.push_back(fmt::format("{}{}: {}", value, name == names.end() ? "" : name->second, count));
+    const std::string_view name = name_of(value);
+    parts.push_back(fmt::format("{}{}{}: {}", value, name.empty() ? "" : " ", name, count));
   }
   return fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -287,8 +262,10 @@ void add(const io::LasFacts& las, Lines& lines) {
     lines.add("record", fmt::format("{} {}, {} bytes, {}", record.user_id, record.record_id,
                                     record.bytes, record.description));
   }
-  add_known("by return", text_of(las.points_by_return, {}));
-  add_known("by class", text_of(las.points_by_class, las_classes(las.point_format)));
+  add_known("by return", text_of(las.points_by_return, [](int) { return std::string_view(); }));
+  add_known("by class", text_of(las.points_by_class, [&](int code) {
+              return io::las_class_name(static_cast<unsigned>(code), las.point_format);
+            }));
 }
 
 }  // namespace

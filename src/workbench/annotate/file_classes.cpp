@@ -10,50 +10,45 @@
 #include "pcednet/core/error.h"
 #include "pcednet/detect/result_truth.h"
 #include "pcednet/formats/labels.h"
+#include "pcednet/io/las/facts.h"
 #include "pcednet/io/promote.h"
 
 namespace pcednet::annotate {
 namespace {
 
-struct LasClass {
-  std::string_view name;
-  Rgb colour;
-};
-
-/// By code: the names of the standard, also those of one group of point formats alone, and colours
-/// that maps use for such things.
-constexpr std::array<LasClass, 23> kLasClasses = {{
-    {"never classified", {125, 132, 142}},
-    {"unassigned", {190, 196, 204}},
-    {"ground", {166, 118, 66}},
-    {"low vegetation", {188, 214, 110}},
-    {"medium vegetation", {108, 179, 68}},
-    {"high vegetation", {38, 118, 46}},
-    {"building", {222, 94, 56}},
-    {"low noise", {216, 27, 96}},
-    {"model key point", {134, 87, 168}},
-    {"water", {47, 120, 183}},
-    {"rail", {93, 74, 102}},
-    {"road surface", {72, 82, 96}},
-    {"overlap", {201, 166, 216}},
-    {"guard wire", {242, 212, 61}},
-    {"conductor wire", {240, 163, 10}},
-    {"transmission tower", {122, 75, 158}},
-    {"wire connector", {194, 92, 150}},
-    {"bridge deck", {127, 200, 216}},
-    {"high noise", {255, 64, 129}},
-    {"overhead structure", {138, 106, 79}},
-    {"ignored ground", {214, 190, 150}},
-    {"snow", {240, 246, 252}},
-    {"temporal exclusion", {84, 92, 104}},
+/// By code: colours that maps use for such things.
+constexpr std::array<Rgb, io::kLasClasses> kLasColours = {{
+    {125, 132, 142},  // never classified
+    {190, 196, 204},  // unassigned
+    {166, 118, 66},   // ground
+    {188, 214, 110},  // low vegetation
+    {108, 179, 68},   // medium vegetation
+    {38, 118, 46},    // high vegetation
+    {222, 94, 56},    // building
+    {216, 27, 96},    // low noise
+    {134, 87, 168},   // model key point
+    {47, 120, 183},   // water
+    {93, 74, 102},    // rail
+    {72, 82, 96},     // road surface
+    {201, 166, 216},  // overlap
+    {242, 212, 61},   // guard wire
+    {240, 163, 10},   // conductor wire
+    {122, 75, 158},   // transmission tower
+    {194, 92, 150},   // wire connector
+    {127, 200, 216},  // bridge deck
+    {255, 64, 129},   // high noise
+    {138, 106, 79},   // overhead structure
+    {214, 190, 150},  // ignored ground
+    {240, 246, 252},  // snow
+    {84, 92, 104},    // temporal exclusion
 }};
 
 FileClass las_class(std::uint8_t code) {
-  if (code >= kLasClasses.size()) {
+  if (code >= kLasColours.size()) {
     return {.id = code, .name = fmt::format("class {}", code), .colour = usual_colour(code)};
   }
-  const auto& [name, colour] = kLasClasses[code];
-  return {.id = code, .name = fmt::format("{} {}", code, name), .colour = colour};
+  const std::string name = fmt::format("{} {}", code, io::las_class_name(code));
+  return {.id = code, .name = name, .colour = kLasColours[code]};
 }
 
 FileClass class_of_table(std::uint8_t id, const ClassTable& table) {

@@ -42,7 +42,44 @@ bool begins_with_copc_record(const InputFile& file) {
   return until_zero(user_id) == kCopcInfoRecord.user_id;
 }
 
+constexpr std::array<std::string_view, kLasClasses> kClassNames = {
+    "never classified",
+    "unassigned",
+    "ground",
+    "low vegetation",
+    "medium vegetation",
+    "high vegetation",
+    "building",
+    "low noise",
+    "model key point",
+    "water",
+    "rail",
+    "road surface",
+    "overlap",
+    "guard wire",
+    "conductor wire",
+    "transmission tower",
+    "wire connector",
+    "bridge deck",
+    "high noise",
+    "overhead structure",
+    "ignored ground",
+    "snow",
+    "temporal exclusion",
+};
+
 }  // namespace
+
+std::string_view las_class_name(unsigned code) {
+  return code < kClassNames.size() ? kClassNames[code] : std::string_view();
+}
+
+std::string_view las_class_name(unsigned code, unsigned point_format) {
+  constexpr unsigned kModelKeyPoint = 8, kWater = 9, kOverlap = 12, kHighNoise = 18;
+  const bool is_of_old = code <= kWater || code == kOverlap || code == kHighNoise;
+  const bool is_of_new = code != kModelKeyPoint && code != kOverlap;
+  return (point_format < 6 ? is_of_old : is_of_new) ? las_class_name(code) : std::string_view();
+}
 
 LasOutline las_outline(const InputFile& file) {
   std::vector<std::string> warnings;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pcednet/cloud/bounding_box.h"
@@ -13,6 +14,15 @@
 #include "pcednet/io/las/file.h"
 
 namespace pcednet::io {
+
+/// The number of classes that the standard names.
+inline constexpr std::size_t kLasClasses = 23;
+
+/// The name of a class, such as "ground", in any point format; empty if it has none.
+std::string_view las_class_name(unsigned code);
+
+/// The same in this point format: 8 and 12 have names up to format 5, others from 10 on above.
+std::string_view las_class_name(unsigned code, unsigned point_format);
 
 /// The information in a LAS or LAZ file beside its points, for people.
 struct LasFacts {
