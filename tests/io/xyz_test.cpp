@@ -107,10 +107,11 @@ TEST(Xyz, ReadsPositionsUnderTheNamesOfSurveyors) {
   const Scratch scratch;
   for (const std::string header :
        {"Easting,Northing,Elevation", "EASTING NORTHING HEIGHT", "easting;northing;altitude",
-        "# Easting Northing Z", "Rechtswert;Hochwert;H\xC3\xB6he",
-        "RECHTSWERT,HOCHWERT,H\xC3\x96HE", "Rechtswert;Hochwert;H\xF6he",
-        "rechtswert\thochwert\thoehe", "E,N,H", "e n h", "\"Easting\",\"Northing\",\"Height\"",
-        "Easting (m),Northing (m),Height (m)", "X [m];Y [ m ];Z[FT]"}) {
+        "# Easting Northing Z", "East;North;Height", "EAST,NORTH,ELEV",
+        "Rechtswert;Hochwert;H\xC3\xB6he", "RECHTSWERT,HOCHWERT,H\xC3\x96HE",
+        "Rechtswert;Hochwert;H\xF6he", "rechtswert\thochwert\thoehe", "E,N,H", "e n h",
+        "\"Easting\",\"Northing\",\"Height\"", "Easting (m),Northing (m),Height (m)",
+        "X [m];Y [ m ];Z[FT]"}) {
     const auto loaded = scratch.read("a.csv", header + "\n1 2 3\n");
     EXPECT_EQ(loaded.cloud.positions, std::vector<Vec3>{Vec3(1, 2, 3)}) << header;
     EXPECT_TRUE(loaded.cloud.attributes.empty() && loaded.warnings.empty()) << header;

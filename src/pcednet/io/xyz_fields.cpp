@@ -25,12 +25,12 @@ std::ptrdiff_t inner_commas(std::string_view word) {
 }
 
 // In the order of preference.
-constexpr std::string_view kEastings[] = {"easting", "rechtswert"};
-constexpr std::string_view kNorthings[] = {"northing", "hochwert"};
+constexpr std::string_view kEastings[] = {"easting", "east", "rechtswert"};
+constexpr std::string_view kNorthings[] = {"northing", "north", "hochwert"};
 /// Höhe in UTF-8 and in Latin-1, with the capital that lower_case() leaves.
-constexpr std::string_view kHeights[] = {"z",       "elevation",   "altitude",
-                                         "height",  "h\xC3\xB6he", "h\xC3\x96he",
-                                         "h\xF6he", "h\xD6he",     "hoehe"};
+constexpr std::string_view kHeights[] = {"z",       "elevation",   "elev",        "altitude",
+                                         "height",  "h\xC3\xB6he", "h\xC3\x96he", "h\xF6he",
+                                         "h\xD6he", "hoehe"};
 
 constexpr std::string_view kUnits[] = {"m",  "metre", "metres", "meter", "meters",
                                        "mm", "cm",    "km",     "ft",    "feet"};
