@@ -30,7 +30,7 @@ bool is_prose(const fs::path& file) {
   try {
     const io::InputFile text(file);
     if (text.size() == 0) return true;
-    return formats::format_of(text).name == "text" && !io::begins_as_points(text);
+    return formats::format_of(text).is_text() && !io::begins_as_points(text);
   } catch (const Error&) {
     return false;  // told where it is read
   }

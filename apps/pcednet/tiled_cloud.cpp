@@ -125,7 +125,7 @@ std::uint64_t memory_limit(const std::string& memory) {
 std::optional<TilesNeeded> tiles_needed(const fs::path& input, const fs::path& output,
                                         std::uint64_t limit) {
   if (is_surely_small(input, limit)) return std::nullopt;
-  const bool is_text = !formats::format_of(io::InputFile(input)).begins;  // see is_tiled()
+  const bool is_text = formats::format_of(io::InputFile(input)).is_text();
   const auto reader = is_text ? nullptr : formats::open_parts(input, tiles::kChunkPoints);
   const InWhole whole = reader ? in_whole(*reader) : in_whole(io::InputFile(input));
   if (whole.bytes <= limit) return std::nullopt;

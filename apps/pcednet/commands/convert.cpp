@@ -108,7 +108,7 @@ void say_points(const ConvertRequest& request, std::size_t written, std::size_t 
 std::unique_ptr<io::PartReader> open_parts(const std::string& input) {
   constexpr std::uint64_t kMostPerByte = 30;  // of memory
   const io::InputFile file(input);
-  const bool is_text = !formats::format_of(file).begins;
+  const bool is_text = formats::format_of(file).is_text();
   if (is_text && file.size() < free_memory() / kMostPerByte) return nullptr;
   const EndsAtOnce reading;
   return formats::open_parts(input);

@@ -46,9 +46,10 @@ struct Format {
 
   bool is_written() const { return write != nullptr || create_parts != nullptr; }
   bool is_las() const { return name == "LAS"; }
+  bool is_text() const { return name == "text"; }
   /// Whether tiles are read from it, and written to it: not text, whose parts must be found by
   /// reading it.
-  bool is_tiled() const { return begins && open_parts && create_parts; }
+  bool is_tiled() const { return !is_text() && open_parts && create_parts; }
 };
 
 /// All formats. Where the beginning of a file fits several, the first counts.

@@ -104,11 +104,8 @@ std::optional<ColumnLabels> edge_column_of(const PointCloud& cloud) {
   for (const char* name : {"is_edge", "edge", "edge_label"}) {
     const Attribute* attribute = column_of_classes(cloud, name);
     if (!attribute) continue;
-    ColumnLabels found = {.classes = {}, .column = attribute->name};
-    found.classes.reserve(cloud.size());
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-      found.classes.push_back(*io::to_label(attribute->value(i)));
-    }
+    ColumnLabels found = {.classes = *io::to_labels(*attribute, cloud.size()),
+                          .column = attribute->name};
     const bool yes_or_no =
         std::all_of(found.classes.begin(), found.classes.end(),
                     [](std::uint8_t label) { return label <= 1 || label == kUnlabelled; });

@@ -25,15 +25,6 @@ void remove_attributes(PointCloud& cloud, std::vector<std::size_t> indices) {
   }
 }
 
-bool to_labels(const Attribute& attribute, std::vector<std::uint8_t>& labels) {
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    const auto label = to_label(attribute.value(i));
-    if (!label) return false;
-    labels[i] = *label;
-  }
-  return true;
-}
-
 /// The meaning of the numbers in colour columns.
 enum class ColourScale { kNone, kBytes, kUnit, kWords };
 
@@ -162,12 +153,23 @@ std::optional<std::uint8_t> to_label(double value) {
   return static_cast<std::uint8_t>(value);
 }
 
+std::optional<std::vector<std::uint8_t>> to_labels(const Attribute& attribute, std::size_t points) {
+  std::vector<std::uint8_t> labels(points);
+  for (std::size_t i = 0; i < points; ++i) {
+    const auto label = to_label(attribute.value(i));
+    if (!label) return std::nullopt;
+    labels[i] = *label;
+  }
+  return labels;
+}
+
 void promote_labels(PointCloud& cloud) {
   for (const std::string& name : label_names()) {
     const auto found = find_plain(cloud, name);
-    std::vector<std::uint8_t> labels(cloud.size());
-    if (!found || !to_labels(cloud.attributes[*found], labels)) continue;
-    cloud.labels = std::move(labels);
+    if (!found) continue;
+    auto labels = to_labels(cloud.attributes[*found], cloud.size());
+    if (!labels) continue;
+    cloud.labels = std::move(*labels);
     remove_attributes(cloud, {*found});
     return;
   }

@@ -115,12 +115,13 @@ std::vector<Each> both(std::vector<Each> these, const std::vector<Each>& those) 
   return these;
 }
 
-/// Moves the creases of rounded surfaces to a list of their own.
-std::vector<Crease> take_rounded(std::vector<Crease>& creases) {
-  const auto rounded = std::stable_partition(creases.begin(), creases.end(),
-                                             [](const Crease& crease) { return !crease.rounded; });
-  std::vector<Crease> taken(rounded, creases.end());
-  creases.erase(rounded, creases.end());
+/// Moves those of which `is_such` is true to a list of their own.
+template <typename Each, typename Test>
+std::vector<Each> take(std::vector<Each>& all, const Test& is_such) {
+  const auto such = std::stable_partition(all.begin(), all.end(),
+                                          [&](const Each& each) { return !is_such(each); });
+  std::vector<Each> taken(std::make_move_iterator(such), std::make_move_iterator(all.end()));
+  all.erase(such, all.end());
   return taken;
 }
 
@@ -130,7 +131,7 @@ std::vector<Chain> make_chains(std::span<const Crease> creases, std::span<const 
                                const Limits& limits, double noise, const Progress* progress) {
   Stage smoothing(progress, "smooth creases", creases.size() + boundaries.size());
   std::vector<Crease> smooth = smoothed(creases, limits.smooth_within, smoothing);
-  const std::vector<Crease> rounded = take_rounded(smooth);
+  const std::vector<Crease> rounded = take(smooth, [](const Crease& c) { return c.rounded; });
   const std::vector<Crease> smooth_boundaries =
       smoothed(boundaries, limits.smooth_within, smoothing);
   Stage tracing(progress, "chains", creases.size() + boundaries.size());
@@ -176,16 +177,6 @@ void join(std::vector<Piece>& pieces, const OrderedPoints& cloud, const Limits& 
   stage.advance();
   complete_coaxial(pieces, cloud, limits.tolerance);
   stage.advance();
-}
-
-/// Moves the smooth edges to a list of their own: they do not share corners with the others.
-std::vector<Piece> take_smooth(std::vector<Piece>& pieces, double noise) {
-  const auto smooth = std::stable_partition(pieces.begin(), pieces.end(), [&](const Piece& piece) {
-    return class_of(piece, noise) != kSmoothEdge;
-  });
-  std::vector<Piece> taken(std::make_move_iterator(smooth), std::make_move_iterator(pieces.end()));
-  pieces.erase(smooth, pieces.end());
-  return taken;
 }
 
 std::vector<Curve> drawn(const std::vector<Crease>& creases) {
@@ -251,7 +242,9 @@ std::vector<Curve> curves_of(std::vector<Piece> pieces, std::vector<Piece> round
                              const FinishOptions& options, const Limits& limits, double spacing,
                              const Progress* progress) {
   Stage stage(progress, "corners", 3);
-  std::vector<Piece> smooth = take_smooth(pieces, options.noise);
+  // Smooth edges do not share corners with the others.
+  std::vector<Piece> smooth = take(
+      pieces, [&](const Piece& piece) { return class_of(piece, options.noise) == kSmoothEdge; });
   append(smooth, std::move(rounded));
   std::vector<Curve> curves = finish(std::move(pieces), options);
   stage.advance();

@@ -103,9 +103,21 @@ void fit_planes(Parts& parts) {
   }
 }
 
+/// Framed points with the moments of each.
+struct CutPoints : FramedPoints {
+  std::array<PointMoments, NearPoints::kMost> moments;
+
+  CutPoints(const NearPoints& points, std::size_t count_) : FramedPoints(points, count_) {
+    for (std::size_t i = 0; i < count; ++i) {
+      moments[i] = {1.0,         x[i],        y[i],        z[i],        x[i] * x[i],
+                    x[i] * y[i], y[i] * y[i], x[i] * z[i], y[i] * z[i], z[i] * z[i]};
+    }
+  }
+};
+
 /// The parts that cuts along lines in one direction make; the middle one passes the edge point.
 PCEDNET_VECTOR_CLONES
-void divide(const FramedPoints& points, double across_x, double across_y, Parts& parts) {
+void divide(const CutPoints& points, double across_x, double across_y, Parts& parts) {
   constexpr double kMiddle = 0.5 * static_cast<double>(kCuts + 1);
   const double origin_x = points.origin.x(), origin_y = points.origin.y();
   std::array<std::int32_t, NearPoints::kMost> strip_of;
@@ -134,7 +146,7 @@ struct BestCut {
 };
 
 /// Looks for a better cut along lines in one direction.
-void try_direction(const FramedPoints& points, int direction, BestCut& best) {
+void try_direction(const CutPoints& points, int direction, BestCut& best) {
   const double angle = std::numbers::pi * direction / kDirections;
   Parts parts;
   divide(points, std::cos(angle), std::sin(angle), parts);
@@ -151,7 +163,7 @@ void try_direction(const FramedPoints& points, int direction, BestCut& best) {
 
 /// The half-planes of the two parts with the least error: of every other direction, and of those
 /// beside the best of them.
-std::optional<HalfPlanes> best_cut(const FramedPoints& points) {
+std::optional<HalfPlanes> best_cut(const CutPoints& points) {
   BestCut best;
   for (int i = 0; i < kDirections; i += 2) try_direction(points, i, best);
   const int middle = best.direction;
@@ -268,7 +280,7 @@ bool is_smooth(const NearPoints& points, const Wedge& wedge, double noise) {
 std::optional<Wedge> fit_half_planes(const NearPoints& points, std::size_t count, double noise) {
   count = std::min(count, points.count);
   if (count < kFewestPoints) return std::nullopt;
-  const FramedPoints framed(points, count);
+  const CutPoints framed(points, count);
   auto halves = best_cut(framed);
   for (int i = 0; i < kImprovements && halves; ++i) {
     halves = improved(*halves, points, count, kOutlier * noise);

@@ -2,11 +2,13 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/vector_clones.h"
 #include "pcednet/lines/lanes.h"
+#include "pcednet/lines/moments.h"
 
 namespace pcednet::lines {
 namespace {
@@ -68,10 +70,6 @@ FramedPoints::FramedPoints(const NearPoints& points, std::size_t count_)
   project(points, frame.x, x);
   project(points, frame.y, y);
   project(points, frame.z, z);
-  for (std::size_t i = 0; i < count; ++i) {
-    moments[i] = {1.0,         x[i],        y[i],        z[i],        x[i] * x[i],
-                  x[i] * y[i], y[i] * y[i], x[i] * z[i], y[i] * z[i], z[i] * z[i]};
-  }
 }
 
 PCEDNET_VECTOR_CLONES

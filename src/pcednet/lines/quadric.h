@@ -1,11 +1,9 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 
 #include "pcednet/core/vec3.h"
 #include "pcednet/lines/local_planes.h"
-#include "pcednet/lines/moments.h"
 
 namespace pcednet::lines {
 
@@ -28,7 +26,6 @@ struct FramedPoints {
   Vec3 origin;  ///< the edge point
   std::size_t count;
   NearPoints::Row x{}, y{}, z{};
-  std::array<PointMoments, NearPoints::kMost> moments;
 
   FramedPoints(const NearPoints& points, std::size_t count);
 

@@ -102,14 +102,9 @@ FileClasses file_labels(const PointCloud& cloud, const std::filesystem::path& fi
 FileClasses las_classes(const PointCloud& cloud) {
   const Attribute* field = io::find_called(cloud, "classification");
   if (!field) return {};
-  std::vector<std::uint8_t> codes;
-  codes.reserve(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const auto code = io::to_label(field->value(i));
-    if (!code) return {};
-    codes.push_back(*code);
-  }
-  FileClasses found = counted(std::move(codes), las_class);
+  auto codes = io::to_labels(*field, cloud.size());
+  if (!codes) return {};
+  FileClasses found = counted(std::move(*codes), las_class);
   return found.classes.size() < 2 ? FileClasses{} : found;
 }
 
