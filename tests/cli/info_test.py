@@ -181,7 +181,7 @@ class Info(CliTest):
         (self.folder / "bare.laz").write_bytes(bare)
         self.assertRegex(run("info", self.folder / "bare.laz").stdout, r"points +300\n")
         said = run("info", self.folder / "bare.laz", "--vpc", self.folder / "b.vpc", expect=3).stderr
-        self.assertIn("bare.laz: the header has no bounds of the points", said)
+        self.assertIn("bare.laz: byte 179: the header has no bounds of the points", said)
         said = run("info", self.folder / "a.ply", "--vpc", self.folder / "b.vpc", expect=2).stderr
         self.assertIn("a.ply: --vpc lists LAS, LAZ and COPC files, which pcednet convert writes", said)
         self.assertFalse((self.folder / "b.vpc").exists())

@@ -12,6 +12,7 @@
 #include "pcednet/formats/file_name.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/io/las/facts.h"
+#include "pcednet/io/las/offsets.h"
 #include "pcednet/io/projection.h"
 #include "pcednet/io/text_scan.h"
 
@@ -229,8 +230,9 @@ VirtualFile virtual_file(const fs::path& path) {
   }
   const io::LasOutline las = io::las_outline(file);
   if (las.points > 0 && las.bounds.empty()) {
-    throw io::unreadable(path,
-                         "the header has no bounds of the points; pcednet convert writes them");
+    throw io::unreadable(path, fmt::format("byte {}: the header has no bounds of the points; "
+                                           "pcednet convert writes them",
+                                           io::las_header::kBounds));
   }
   return {.path = path,
           .points = las.points,
