@@ -120,7 +120,7 @@ def page_of_program(program, exit_codes, about):
     lines += section(
         "DESCRIPTION", "pcednet labels every point of a point cloud as non\\-edge, smooth\\-edge,",
         "sharp\\-edge or boundary, with confidences, and draws the edges as curves.",
-        "It reads PLY, PCD, OBJ, STL, LAS, LAZ, COPC, E57 and text.",
+        "It reads PLY, PCD, OBJ, OFF, STL, LAS, LAZ, COPC, E57 and text.",
         "It implements PCEDNet (Himeur et al., ACM Transactions on Graphics 41, 2021).")
     commands = []
     for command in program.commands:

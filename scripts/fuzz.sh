@@ -1,13 +1,13 @@
 #!/bin/sh
 # Fuzzes every reader for SECONDS each: scripts/fuzz.sh SECONDS [READER...]
-# Readers: ply pcd obj stl ptx xyz las e57 parts npy features model project curves. Inputs found are kept in build/fuzz/corpus, and what
+# Readers: ply pcd obj off stl ptx xyz las e57 parts npy features model project curves. Inputs found are kept in build/fuzz/corpus, and what
 # breaks a reader in build/fuzz/findings. Exits with 1 if something does.
 # PCEDNET names the program that makes the first inputs (default: build/release/bin/pcednet).
 set -eu
 cd "$(dirname "$0")/.."
 seconds=${1:?usage: scripts/fuzz.sh SECONDS [READER...]}
 shift
-all="ply pcd obj stl ptx xyz las e57 parts npy features model project curves"
+all="ply pcd obj off stl ptx xyz las e57 parts npy features model project curves"
 # shellcheck disable=SC2086
 [ $# -gt 0 ] || set -- $all
 command -v clang++ >/dev/null || { echo "fuzz.sh: no clang++; scripts/setup.sh check" >&2; exit 77; }
@@ -33,6 +33,7 @@ convert "$corpus/pcd/ascii.pcd" --ascii
 convert "$corpus/obj/seed.obj"
 printf '%s\n' 'solid a' 'facet normal 0 0 1' 'outer loop' 'vertex 0 0 0' 'vertex 1 0 0' 'vertex 0 1 0' \
   endloop endfacet 'endsolid a' >"$corpus/stl/ascii.stl"
+printf '%s\n' CNOFF '3 1 0' '0 0 0 0 0 1 9 8 7' '1 0 0 0 0 1 .5 .5 .5 1' '0 1 0 0 0 1 1 1 1' '3 0 1 2 7 7 7' >"$corpus/off/seed.off"
 { printf '%80s\001\000\000\000' ''; head -c 50 /dev/zero; } >"$corpus/stl/binary.stl"
 printf '%s\n' 1 2 '0 0 0' '1 0 0' '0 1 0' '0 0 1' '1 0 0 0' '0 1 0 0' '0 0 1 0' '4 5 6 1' '1 2 3 .5 7 8 9' '0 0 0 .5' \
   >"$corpus/ptx/seed.ptx"

@@ -259,7 +259,7 @@ def existing(path):
 
 
 def read(path):
-    """Read a point file: PLY, PCD, OBJ, STL, LAS, LAZ, COPC, E57, PTX or text.
+    """Read a point file: PLY, PCD, OBJ, OFF, STL, LAS, LAZ, COPC, E57, PTX or text.
 
     Parameters
     ----------

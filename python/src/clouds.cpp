@@ -196,7 +196,7 @@ py::dict sample_faces(const py::dict& parts, std::size_t points, std::uint64_t s
     const auto triangles = io::triangles_of(cloud);
     if (triangles.empty()) {
       throw Error(ErrorKind::kInsufficient,
-                  "no faces to sample: .obj, .ply and .stl files can have faces");
+                  "no faces to sample: .obj, .off, .ply and .stl files can have faces");
     }
     cloud = shapes::sample_mesh(cloud, triangles, {.points = points, .seed = seed}, job);
     detect::set_estimated_normals(cloud, false);

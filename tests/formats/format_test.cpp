@@ -9,7 +9,7 @@ namespace {
 
 TEST(Formats, AreListedByTheirExtensions) {
   EXPECT_EQ(extensions_read(),
-            ".ply .pcd .las .laz .copc.laz .e57 .ptx .obj .stl .xyz .txt .asc .pts .csv");
+            ".ply .pcd .las .laz .copc.laz .e57 .ptx .obj .off .stl .xyz .txt .asc .pts .csv");
   EXPECT_EQ(extensions_written(" or "),
             ".ply .pcd .las .laz .copc.laz .obj .xyz .txt .asc .pts or .csv");
 }

@@ -59,6 +59,10 @@ const char* const kAsciiStl =
     "solid a\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n"
     "   vertex 0 1 0\n  endloop\n endfacet\nendsolid a\n";
 
+const char* const kOff =
+    "# a\nCNOFF\n4 2 0\n0 0 0 0 0 1 9 8 7\n1 0 0 0 0 1 9 8 7 255\n1 1 0 0 0 1 1 2 3\n"
+    "0 1 0 0 0 1 0 0 0\n3 0 1 2\n3 0 2 3 .5 .5 .5\n";
+
 const char* const kPtx =
     "2\n2\n4 5 6\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n4 5 6 1\n1 2 3 .5 7 8 9\n"
     "0 0 0 .5\n3 2 1 .5 7 8 9\n1 1 1 1 0 0 0\n";
@@ -92,6 +96,7 @@ std::vector<Example> examples(const Scratch& scratch) {
       {"text.pcd", written("a.pcd", true), false},
       {"packed.pcd", compressed, true},
       {"a.obj", written("a.obj", false) + "f 1//1 2//2 -1//-1\n", false},
+      {"a.off", kOff, false},
       {"a.stl", stl_example(), true},
       {"text.stl", kAsciiStl, false},
       {"a.ptx", kPtx, false},
@@ -177,7 +182,8 @@ TEST(Robustness, SurvivesFlippedBytes) {
 TEST(Robustness, SurvivesNoise) {
   const Scratch scratch;
   Random random(43);
-  for (const char* name : {"a.ply", "a.pcd", "a.obj", "a.stl", "a.ptx", "a.xyz", "a.csv"}) {
+  for (const char* name :
+       {"a.ply", "a.pcd", "a.obj", "a.off", "a.stl", "a.ptx", "a.xyz", "a.csv"}) {
     for (int i = 0; i < 300; ++i) {
       std::string bytes = i % 2 ? "" : std::string(name) == "a.ply" ? "ply\n" : "# .PCD\n";
       for (std::size_t n = random.index(300); n > 0; --n) {
@@ -207,7 +213,7 @@ TEST(ReadCloud, SaysWhatItWouldAccept) {
   EXPECT_TRUE(contains(message("a.las", "LASF"), "ends within the LAS header"));
   EXPECT_TRUE(contains(message("a.laz", "LA"), "must begin with LASF"));
   for (const char* name :
-       {"a.ply", "a.pcd", "a.las", "a.e57", "a.obj", "a.stl", "a.ptx", "a.xyz", "a.csv"}) {
+       {"a.ply", "a.pcd", "a.las", "a.e57", "a.obj", "a.off", "a.stl", "a.ptx", "a.xyz", "a.csv"}) {
     EXPECT_TRUE(contains(message(name, ""), std::string(name) + ": the file is empty")) << name;
   }
   EXPECT_TRUE(contains(message("a.e57", "ASTM-E57"), "ends at byte"));

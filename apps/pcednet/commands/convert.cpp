@@ -61,7 +61,7 @@ void sample(const ConvertRequest& request, const Progress& progress, PointCloud&
   const auto triangles = io::triangles_of(cloud);
   if (triangles.empty()) {
     throw Error(ErrorKind::kInsufficient,
-                "has no faces to sample; .obj, .ply and .stl files can have faces");
+                "has no faces to sample; .obj, .off, .ply and .stl files can have faces");
   }
   cloud = shapes::sample_mesh(cloud, triangles,
                               {request.samples, request.vertex_normals, request.seed}, &progress);

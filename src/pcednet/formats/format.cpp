@@ -8,6 +8,7 @@
 #include "pcednet/io/las/file.h"
 #include "pcednet/io/las/las.h"
 #include "pcednet/io/obj.h"
+#include "pcednet/io/off.h"
 #include "pcednet/io/pcd.h"
 #include "pcednet/io/pcd_header.h"
 #include "pcednet/io/ply.h"
@@ -68,6 +69,7 @@ std::vector<Format> make_formats() {
        .read = io::read_obj,
        .write = io::write_obj,
        .losses = [](const fs::path&, const PointCloud& cloud) { return io::obj_losses(cloud); }},
+      {.name = "OFF", .extensions = {".off"}, .read = io::read_off},
       {.name = "STL", .extensions = {".stl"}, .is_mesh = true, .read = io::read_stl},
       {.name = "text",
        .extensions = {".xyz", ".txt", ".asc", ".pts", ".csv"},
