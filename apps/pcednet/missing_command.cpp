@@ -89,6 +89,20 @@ std::string surplus_input(const CLI::App& app) {
   return "";
 }
 
+/// What the command needs and did not get; empty if only an option is missing.
+std::string missing_input(const CLI::App& app) {
+  const CLI::App* last = last_command(app);
+  for (const CLI::Option* one : last->get_options()) {
+    if (!one->get_positional() || !one->get_required() || one->count() > 0) continue;
+    const std::string name = one->get_name(true);
+    const std::string_view article = one->get_expected_max() != 1 ? "one or more"
+                                     : name.starts_with('i')      ? "an"
+                                                                  : "a";
+    return fmt::format("{} needs {} {}", last->get_name(), article, name);
+  }
+  return "";
+}
+
 /// What stands in place of a command; empty if no command is missing.
 std::string missing_command(const CLI::App& app) {
   const CLI::App* last = last_command(app);
@@ -113,6 +127,7 @@ std::string why_refused(const CLI::ParseError& error, const CLI::App& app) {
   std::string why = lacks ? missing_command(app) : "";
   if (why.empty() && (lacks || has_more)) why = unknown_option(app);
   if (why.empty() && has_more) why = surplus_input(app);
+  if (why.empty() && lacks) why = missing_input(app);
   return why.empty() ? error.what() : why;
 }
 

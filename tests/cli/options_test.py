@@ -173,8 +173,10 @@ class Options(CliTest):
         self.assertIn("lines takes one input; not expected: b.ply\n",
                       run("lines", self.cloud, "b.ply", "-o", "a.dxf", expect=2).stderr)
         self.assertIn("run takes one plan; not expected: b.json\n", run("tiles", "run", "a.json", "b.json", expect=2).stderr)
-        self.assertEqual("pcednet: inputs is required\nRun with --help for more information.\n",
-                         run("classify", expect=2).stderr)
+        for words, said in ((["classify"], "classify needs one or more inputs"), (["lines"], "lines needs an input"),
+                            (["tiles", "run"], "run needs a plan"), (["lines", "a.ply"], "--output is required")):
+            self.assertEqual(f"pcednet: {said}\nRun with --help for more information.\n",
+                             run(*words, expect=2).stderr)
 
     def test_a_file_with_the_name_of_an_option_is_named(self):
         (self.folder / "-scan.ply").write_bytes(self.cloud.read_bytes())
