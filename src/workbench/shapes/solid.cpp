@@ -254,12 +254,17 @@ Profile slot_profile(const Vec2& a, const Vec2& b, double radius) {
 }
 
 Solid::Value Solid::value(const Vec3& p) const {
+  constexpr double kRounding = 1e-9;
   Value result = {std::numeric_limits<double>::infinity(), {}};
   for (std::size_t i = 0; i < volumes_.size(); ++i) {
     const Feature& feature = volumes_[i];
-    const double away = (p - feature.centre).norm() - feature.reach;  // at most
-    if (feature.filled ? away >= result.distance : -away <= result.distance) continue;
-    Value value = value_of(feature.volume, feature.to_local * p);
+    const auto is_beyond = [&](double away) {  // a volume that is at least so far away
+      return feature.filled ? away >= result.distance : -away <= result.distance;
+    };
+    if (is_beyond((p - feature.centre).norm() - feature.reach)) continue;
+    const Vec3 local = feature.to_local * p;
+    if (is_beyond(feature.least_distance(local) - kRounding)) continue;
+    Value value = value_of(feature.volume, local);
     value.face.volume = static_cast<std::uint32_t>(i);
     if (!feature.filled) value.distance = -value.distance;
     if (feature.filled ? value.distance < result.distance : value.distance > result.distance) {
@@ -269,8 +274,15 @@ Solid::Value Solid::value(const Vec3& p) const {
   return result;
 }
 
+double Solid::Feature::least_distance(const Vec3& local) const {
+  const Vec2 aside = (profile_place(volume, local) - middle).cwiseAbs() - half_size;
+  const double side = aside.maxCoeff();
+  if (volume.kind == Volume::Kind::kRevolution) return side;
+  return std::max(side, std::abs(local.z()) - volume.half_height);
+}
+
 double Solid::distance_to(const Face& face, const Vec3& p) const {
-  const auto& [volume, to_local, centre, reach, filled] = volumes_[face.volume];
+  const auto& [volume, to_local, centre, reach, middle, half_size, filled] = volumes_[face.volume];
   const Vec3 local = to_local * p;
   const double cap = (face.part == Face::Part::kTop || face.part == Face::Part::kTopRim)
                          ? local.z() - volume.half_height
@@ -307,7 +319,9 @@ void Solid::put(Volume volume, bool filled) {
   const BoundingBox box = box_of(volume);
   if (filled) box_.add(box);
   const Eigen::Isometry3d to_local = volume.frame.inverse();
-  volumes_.push_back({std::move(volume), to_local, box.centre(), 0.5 * box.diagonal(), filled});
+  const Vec2 low = volume.profile.low(), high = volume.profile.high();
+  volumes_.push_back({std::move(volume), to_local, box.centre(), 0.5 * box.diagonal(),
+                      0.5 * (low + high), 0.5 * (high - low), filled});
 }
 
 }  // namespace pcednet::shapes

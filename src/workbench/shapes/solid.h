@@ -127,9 +127,14 @@ class Solid {
   struct Feature {
     Volume volume;
     Eigen::Isometry3d to_local;
-    Vec3 centre;   ///< of a ball that holds the volume
-    double reach;  ///< its radius
+    Vec3 centre;             ///< of a ball that holds the volume
+    double reach;            ///< its radius
+    Vec2 middle, half_size;  ///< of the profile's box
     bool filled;
+
+    /// The volume's value is at least this, but for rounding: its signed distance to the caps and
+    /// to the profile's box.
+    double least_distance(const Vec3& local) const;
   };
 
   void put(Volume volume, bool filled);
