@@ -1,10 +1,12 @@
 """pcednet tiles: the labels of the whole from any inputs, and their columns."""
 import json
 import re
+import struct
 import unittest
 
 import numpy as np
 
+from las_test import FORMATS, descriptor, las, vlr
 from support import read_ply, run, write_ply
 from tiles_support import TilesTest, field, sorted_rows, stairs
 
@@ -65,7 +67,7 @@ class Tiles(TilesTest):
     def test_other_formats_are_refused_with_the_command_that_makes_one_of_these(self):
         p, n = field(2, 200)
         write_ply(self.folder / "a.ply", p, n)
-        for other, readable in (("a.xyz", "a.ply"), ("a.pcd", "a.ply"), ("text.ply", "text.laz")):
+        for other, readable in (("a.xyz", "a.laz"), ("a.pcd", "a.laz"), ("text.ply", "text.laz")):
             other, readable = self.folder / other, self.folder / readable
             run("convert", self.folder / "a.ply", "-o", other, *(["--ascii"] if other.suffix == ".ply" else []))
             said = run("tiles", "plan", other, "-o", self.folder / "q.json", expect=2).stderr
@@ -172,7 +174,70 @@ class Tiles(TilesTest):
         write_ply(self.folder / "in/other.ply", p, n, np.zeros(len(p), np.uint8))
         said = run("tiles", "plan", self.folder / "in", "-o", self.folder / "q.json", expect=2)
         self.assertIn("different columns; only", said.stderr)
-        self.assertIn("other.ply has labels. Convert", said.stderr)
+        self.assertIn("other.ply has labels: plan them one by one", said.stderr)
+
+    def test_las_of_different_forms_is_one_cloud(self):
+        p, _ = field(3, 400)
+        steps = np.unique(np.rint((p + 100) * 1000).astype(np.int32), axis=0)  # in millimetres
+        extra = [("Amplitude", "<u2")]
+        (self.folder / "in").mkdir()
+        parts = {}
+        for k, number in enumerate((1, 3, 6, 7, 8)):
+            some = steps[k::5]
+            rows = np.zeros(len(some), FORMATS[number] + (extra if number == 3 else []))
+            for field_of_las in rows.dtype.names:
+                rows[field_of_las] = 1 + np.arange(len(some)) % 7
+            for axis, name in enumerate("XYZ"):
+                rows[name] = some[:, axis]
+            rows["returns"] = 0x11 if number > 5 else 0x09  # the only one
+            if number == 7:
+                rows["Red"] *= 1000  # the colours of the others are below 256
+            parts[number] = rows
+            vlrs = [vlr(b"LASF_Spec", 4, descriptor("Amplitude", 3))] if number == 3 else []
+            (self.folder / f"in/{number}.las").write_bytes(las(number, rows, vlrs))
+        for options in ((), ("--sort", self.folder / "sorted")):
+            said = run("tiles", "plan", self.folder / "in", "-o", self.folder / "p.json", "--tile", 1.4,
+                       "--overwrite", *options).stderr
+            self.assertIn("the tiles have all, with 0 where an input has none: Amplitude, Blue, Green, Infrared, Red",
+                          said)
+            run("tiles", "run", self.folder / "p.json")
+            run("tiles", "join", self.folder / "p.json", "-o", self.folder / "all.las", "--overwrite")
+            self.check_forms(self.folder / "all.las", parts)
+
+    def check_forms(self, joined, parts):
+        """That a file of point format 8 has the points of all parts, with their values."""
+        data = joined.read_bytes()
+        self.assertEqual((data[25], data[104]), (4, 8))
+        start, = struct.unpack_from("<I", data, 96)
+        types = FORMATS[8] + [("Amplitude", "<u2"), ("edge_class", "u1"), ("p", "<f4", 2)]
+        rows = np.frombuffer(data, types, struct.unpack_from("<Q", data, 247)[0], start)
+        place_of = {point: i for i, point in enumerate(zip(rows["X"], rows["Y"], rows["Z"]))}
+        self.assertEqual(len(place_of), sum(len(part) for part in parts.values()))
+        for number, part in parts.items():
+            its = rows[[place_of[point] for point in zip(part["X"], part["Y"], part["Z"])]]
+            np.testing.assert_array_equal(its["returns"], 0x11)
+            for name in ("Intensity", "UserData", "PointSourceId", "GpsTime"):
+                np.testing.assert_array_equal(its[name], part[name])
+            for name in ("Red", "Green", "Blue", "Infrared", "Amplitude"):
+                np.testing.assert_array_equal(its[name], part[name] if name in part.dtype.names else 0)
+            angle = np.rint(part["ScanAngleRank"] / 0.006) if number < 6 else part["ScanAngle"]
+            np.testing.assert_array_equal(its["ScanAngle"], angle)
+            old = "classification" if number < 6 else "Classification"
+            np.testing.assert_array_equal(its["Classification"], part[old])
+        self.assertGreater(np.mean(rows["edge_class"] == 2), 0.02)
+
+    def test_ply_beside_las_is_refused_with_the_command_that_makes_las(self):
+        p, n = field(2, 200)
+        half = p[:, 0] < 0.7
+        write_ply(self.folder / "a.ply", p[half])
+        write_ply(self.folder / "b.ply", p[~half])
+        run("convert", self.folder / "a.ply", "-o", self.folder / "a.laz")
+        said = run("tiles", "plan", self.folder / "a.laz", self.folder / "b.ply", "-o", self.folder / "q.json",
+                   expect=2).stderr
+        command = f"convert {self.folder / 'b.ply'} -o {self.folder / 'b.laz'}"
+        self.assertIn(f"columns of LAZ may differ, and pcednet {command} makes one", said)
+        run(*command.split())
+        run("tiles", "plan", self.folder / "a.laz", self.folder / "b.laz", "-o", self.folder / "q.json")
 
     def test_results_and_files_without_points_are_no_inputs(self):
         p, n = field(3, 300)

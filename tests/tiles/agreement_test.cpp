@@ -43,7 +43,8 @@ class Agreement : public testing::Test, protected test::OwnFolder {
   std::string refused(const LasTestFile& a, const LasTestFile& b) {
     plan_ = {};
     try {
-      check_agreement({indexed("a.las", a), indexed("b.las", b)}, plan_);
+      std::vector<IndexedInput> inputs = {indexed("a.las", a), indexed("b.las", b)};
+      check_agreement(inputs, plan_);
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::kUsage);
       const std::string said = error.what();
@@ -58,22 +59,42 @@ class Agreement : public testing::Test, protected test::OwnFolder {
   Plan plan_;
 };
 
-TEST_F(Agreement, NamesTheColumnsThatDiffer) {
+TEST_F(Agreement, TakesTheColumnsOfAll) {
   const LasTestFile a = some_points();
   EXPECT_EQ(refused(a, a), "");
-  LasTestFile b = some_points(7);
-  const std::string said = refused(a, b);
-  EXPECT_TRUE(said.starts_with("have different columns; only " + (folder_ / "b.las").string() +
-                               " has colours, Red (1 of 2 bytes), Green"))
-      << said;
-  EXPECT_EQ(said.find("Intensity"), std::string::npos) << said;
+  EXPECT_EQ(plan_.forms, (std::vector<std::size_t>{0}));
+  EXPECT_TRUE(plan_.notes.empty());
+  EXPECT_EQ(refused(some_points(8), a), "");
+  EXPECT_EQ(plan_.forms, (std::vector<std::size_t>{0}));
+  EXPECT_EQ(refused(a, some_points(7)), "");
+  EXPECT_EQ(plan_.forms, (std::vector<std::size_t>{0, 1}));
+  ASSERT_EQ(plan_.notes.size(), 1u);
+  EXPECT_EQ(plan_.notes[0],
+            "the inputs have different columns: the tiles have all, with 0 where an input has "
+            "none: Blue, Green, Red");
 }
 
-TEST_F(Agreement, NeedsExtraBytesOfOneMeaning) {
+TEST_F(Agreement, NamesTheColumnsThatCannotBeZero) {
+  LasTestFile a{.rows = io::las_test_rows(6, 100, 1), .extra = 1};
+  LasTestFile b = a;
+  a.records = {{"LASF_Spec", 4, io::las_test_extra("Deviation", 1)}};
+  b.records = {{"LASF_Spec", 4, io::las_test_extra("label", 1)}};
+  EXPECT_EQ(refused(a, b), "have different columns; only " + (folder_ / "a.las").string() +
+                               " has Deviation (1 of 1 bytes); only " +
+                               (folder_ / "b.las").string() + " has labels: plan them one by one");
+}
+
+TEST_F(Agreement, NeedsDescriptionsOfExtraBytesThatDiffer) {
+  LasTestFile a{.rows = io::las_test_rows(6, 100, 1), .extra = 1};
+  EXPECT_EQ(refused(a, a), "");
+  EXPECT_TRUE(refused(some_points(), a).starts_with("have different columns, and "));
+}
+
+TEST_F(Agreement, LeavesOutExtraBytesOfAnotherMeaning) {
   LasTestFile a{.rows = io::las_test_rows(6, 100, 2), .extra = 2};
-  const auto with = [&](unsigned options, double scale, double offset, double no_data,
-                        double least) {
-    std::string entry = io::las_test_extra("Height", 3, options);
+  const auto with = [&](unsigned options, double scale, double offset, double no_data, double least,
+                        unsigned type = 3) {
+    std::string entry = io::las_test_extra("Height", type, options);
     io::set_number(entry, 40, no_data);
     io::set_number(entry, 64, least);
     io::set_number(entry, 112, scale);
@@ -83,15 +104,28 @@ TEST_F(Agreement, NeedsExtraBytesOfOneMeaning) {
     return file;
   };
   const LasTestFile first = with(8, 0.01, 0.0, 0.0, 0.0);
-  const std::string difference = "give Height different scales, offsets or no-data values";
-  EXPECT_EQ(refused(first, first), "");
-  EXPECT_TRUE(refused(first, with(8, 0.1, 0.0, 0.0, 0.0)).starts_with(difference));
-  EXPECT_TRUE(refused(first, with(24, 0.01, 5.0, 0.0, 0.0)).starts_with(difference));
-  EXPECT_TRUE(refused(first, with(9, 0.01, 0.0, -1.0, 0.0)).starts_with(difference));
-  EXPECT_TRUE(refused(first, with(0, 0.01, 0.0, 0.0, 0.0)).starts_with(difference));
+  const auto leaves_out = [&](const LasTestFile& other) {
+    std::vector<IndexedInput> inputs = {indexed("a.las", first), indexed("b.las", other)};
+    plan_ = {};
+    check_agreement(inputs, plan_);
+    EXPECT_TRUE(inputs[0].input.left_out.empty());
+    return inputs[1].input.left_out == std::vector<std::string>{"Height"};
+  };
+  EXPECT_TRUE(leaves_out(with(8, 0.1, 0.0, 0.0, 0.0)));
+  ASSERT_EQ(plan_.notes.size(), 1u);
+  EXPECT_EQ(plan_.notes[0],
+            fmt::format("{0}/b.las: Height has another type, scale, offset or no-data value than "
+                        "in {0}/a.las: 0 in the tiles",
+                        folder_.string()));
+  EXPECT_TRUE(leaves_out(with(24, 0.01, 5.0, 0.0, 0.0)));
+  EXPECT_TRUE(leaves_out(with(9, 0.01, 0.0, -1.0, 0.0)));
+  EXPECT_TRUE(leaves_out(with(0, 0.01, 0.0, 0.0, 0.0)));
+  EXPECT_TRUE(leaves_out(with(8, 0.01, 0.0, 0.0, 0.0, 4)));
   // What is not said to be there means nothing; ranges may differ.
-  EXPECT_EQ(refused(first, with(24, 0.01, 0.0, 7.0, 3.0)), "");
-  EXPECT_EQ(refused(first, with(10, 0.01, 9.0, 7.0, 3.0)), "");
+  EXPECT_FALSE(leaves_out(first));
+  EXPECT_FALSE(leaves_out(with(24, 0.01, 0.0, 7.0, 3.0)));
+  EXPECT_FALSE(leaves_out(with(10, 0.01, 9.0, 7.0, 3.0)));
+  EXPECT_TRUE(plan_.notes.empty());
 }
 
 TEST_F(Agreement, NeedsOneSystemOfHeights) {
@@ -108,7 +142,6 @@ TEST_F(Agreement, NeedsOneSystemOfHeights) {
   EXPECT_TRUE(refused(coded, with(system_with_heights("5783")))
                   .starts_with("have different coordinate systems: EPSG 25832+7837, and "
                                "25832+5783"));
-  EXPECT_TRUE(refused(plain, coded).starts_with("have different coordinate systems"));
   EXPECT_TRUE(
       refused(with(system_with_heights("", "DHHN92")), with(system_with_heights("", "DHHN2016")))
           .starts_with("have different coordinate systems"));
@@ -119,11 +152,33 @@ TEST_F(Agreement, NeedsOneSystemOfHeights) {
   EXPECT_EQ(refused(as_esri("DHHN92"), as_esri("DHHN92")), "");
   EXPECT_TRUE(refused(as_esri("DHHN92"), as_esri("DHHN2016"))
                   .starts_with("have different coordinate systems"));
-  EXPECT_TRUE(refused(plain, some_points())
-                  .starts_with("have different coordinate systems: EPSG 25832, and none"));
 }
 
-TEST_F(Agreement, NeedsOneBeginningOfTimes) {
+TEST_F(Agreement, TakesASystemThatIsNotNamedForThatOfTheOthers) {
+  LasTestFile plain = some_points(), coded = plain;
+  plain.records = {{"LASF_Projection", 2112, kUtm}};
+  coded.records = {system_with_heights("7837")};
+  const auto noted = [&](const LasTestFile& a, const LasTestFile& b) {
+    EXPECT_EQ(refused(a, b), "");
+    return plan_.notes.size() == 1 ? plan_.notes[0] : "";
+  };
+  const std::string a = (folder_ / "a.las").string(), b = (folder_ / "b.las").string();
+  const std::string no_system = ": no coordinate system is named: taken for that of ";
+  const std::string no_heights = ": no system of heights is named: taken for that of ";
+  EXPECT_EQ(noted(plain, some_points()), b + no_system + a);
+  EXPECT_EQ(plan_.forms, (std::vector<std::size_t>{0}));
+  EXPECT_EQ(noted(some_points(), plain), a + no_system + b);
+  EXPECT_EQ(plan_.forms, (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(noted(plain, coded), a + no_heights + b);
+  EXPECT_EQ(noted(coded, plain), b + no_heights + a);
+  LasTestFile other = plain;
+  other.records = {
+      {"LASF_Projection", 2112, R"(PROJCS["UTM 33N",UNIT["metre",1],AUTHORITY["EPSG","25833"]])"}};
+  EXPECT_EQ(refused(coded, other),
+            "have different coordinate systems: EPSG 25832+7837, and 25833: plan them one by one");
+}
+
+TEST_F(Agreement, LeavesOutTimesThatCountFromElsewhere) {
   const auto encoded = [&](const std::string& name, LasTestFile file, unsigned encoding) {
     std::string bytes = io::las_bytes(file);
     io::set_number(bytes, 6, static_cast<std::uint16_t>(encoding));
@@ -137,13 +192,10 @@ TEST_F(Agreement, NeedsOneBeginningOfTimes) {
     a.minor = minor;
     LasTestFile b = a;
     b.time_offset = offset;
-    try {
-      check_agreement({encoded("a.las", a, its), encoded("b.las", b, others)}, plan_);
-    } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find("use different GPS time bases"), std::string::npos);
-      return false;
-    }
-    return true;
+    std::vector<IndexedInput> inputs = {encoded("a.las", a, its), encoded("b.las", b, others)};
+    plan_ = {};
+    check_agreement(inputs, plan_);
+    return inputs[1].input.left_out.empty();
   };
   EXPECT_TRUE(agree(6, 4, 17, 17));
   EXPECT_FALSE(agree(6, 4, 17, 16));
@@ -152,6 +204,19 @@ TEST_F(Agreement, NeedsOneBeginningOfTimes) {
   EXPECT_TRUE(agree(6, 5, 17, 17, 1200));
   EXPECT_FALSE(agree(6, 5, 81, 81, 1200));
   EXPECT_FALSE(agree(6, 5, 81, 17));
+  ASSERT_EQ(plan_.notes.size(), 1u);
+  EXPECT_EQ(plan_.notes[0],
+            fmt::format("{0}/b.las: GpsTime counts from elsewhere (global encoding) than in "
+                        "{0}/a.las: 0 in the tiles",
+                        folder_.string()));
+  // Times of 0 are none.
+  LasTestFile timed = some_points(6), untimed = timed;
+  for (std::size_t at = 22; at < untimed.rows.size(); at += io::las_test_stride(6)) {
+    io::set_number(untimed.rows, at, 0.0);
+  }
+  std::vector<IndexedInput> inputs = {encoded("a.las", untimed, 16), encoded("b.las", timed, 17)};
+  check_agreement(inputs, plan_);
+  EXPECT_TRUE(inputs[0].input.left_out.empty() && inputs[1].input.left_out.empty());
 }
 
 TEST_F(Agreement, RefusesSeveralInputsWithWaveforms) {
@@ -162,7 +227,8 @@ TEST_F(Agreement, RefusesSeveralInputsWithWaveforms) {
   for (const auto& [a, b] : {std::pair(waves, waves), {plain, waves}, {waves, plain}}) {
     EXPECT_TRUE(refused(a, b).starts_with("have waveforms"));
   }
-  EXPECT_NO_THROW(check_agreement({indexed("a.las", waves)}, plan_));
+  std::vector<IndexedInput> alone = {indexed("a.las", waves)};
+  EXPECT_NO_THROW(check_agreement(alone, plan_));
 }
 
 TEST_F(Agreement, NotesRecordsThatGoMissing) {

@@ -22,10 +22,16 @@ class PlanFile : public testing::Test, protected test::OwnFolder {
 
   Plan some_plan() const {
     Plan plan{.version = kVersion};
-    plan.inputs = {
-        {folder_ / "in/a.laz", 1234, true, 0, 1, {{50000, 0, {{0, 1, 2}, {3, 4, 5.1}}, "d1"}}},
-        {"/elsewhere/b.laz", 99, false, 1, 1, {{10, 10, {}, "d2"}, {1, 0, {}, "d3"}}}};
+    plan.inputs = {{folder_ / "in/a.laz",
+                    1234,
+                    true,
+                    0,
+                    1,
+                    {{50000, 0, {{0, 1, 2}, {3, 4, 5.1}}, "d1"}},
+                    {"GpsTime"}},
+                   {"/elsewhere/b.laz", 99, false, 1, 1, {{10, 10, {}, "d2"}, {1, 0, {}, "d3"}}}};
     plan.las_steps = {0.01, 0, 0.01, 0, 0.01, 0.1};
+    plan.forms = {0, 1};
     plan.places = 50000;
     plan.box = {{0, 1, 2}, {3, 4, 0.1 + 0.2}};
     plan.model = {"general", "/models/general.safetensors", "abc", false, true, false};
@@ -66,6 +72,9 @@ TEST_F(PlanFile, ComesBackAsItWas) {
   EXPECT_EQ(back.points(), 50011u);
   EXPECT_EQ(back.places, 50000u);
   EXPECT_EQ(back.las_steps, plan.las_steps);
+  EXPECT_EQ(back.forms, plan.forms);
+  EXPECT_EQ(back.inputs[0].left_out, plan.inputs[0].left_out);
+  EXPECT_TRUE(back.inputs[1].left_out.empty());
   EXPECT_EQ(back.box.max, plan.box.max);
   ASSERT_EQ(back.scanners.size(), 2u);
   EXPECT_EQ(back.scanners[0], plan.scanners[0]);
@@ -163,6 +172,11 @@ TEST_F(PlanFile, SaysWhatIsWrongInAPlainSentence) {
   auto wrong = whole;
   wrong["tiles"] = nlohmann::json::array();
   EXPECT_EQ(said(wrong), none + ": \"tiles\" is damaged");
+  for (const auto& forms : {std::vector<int>{}, {0, 2}}) {
+    wrong = whole;
+    wrong["forms"] = forms;
+    EXPECT_EQ(said(wrong), none + ": \"forms\" is damaged");
+  }
   wrong = whole;
   wrong["pyramids"][0]["levels"][0][1] = "heap";
   EXPECT_EQ(said(wrong), none + ": \"pyramids\" is missing or damaged");

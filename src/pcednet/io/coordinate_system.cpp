@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -130,6 +131,19 @@ CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
   // Degrees are no lengths, though heights above them are.
   if (!system.geographic) system.unit = common.value_or(LengthUnit::kNone);
   return system;
+}
+
+std::string heights_in(std::string_view wkt) {
+  std::string text;
+  for (const char c : wkt) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (!std::isspace(byte)) text += static_cast<char>(std::toupper(byte));
+  }
+  std::size_t begin = std::string::npos;
+  for (const char* keyword : {"VERT_CS[", "VERTCS[", "VERTCRS[", "VERTICALCRS["}) {
+    begin = std::min(begin, text.find(keyword));
+  }
+  return begin == std::string::npos ? "" : text.substr(begin);
 }
 
 std::string wkt_of_comments(const std::vector<std::string>& comments) {

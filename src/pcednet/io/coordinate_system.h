@@ -32,6 +32,10 @@ std::string code_text(const CoordinateSystem& system);
 /// unit and no code but that of the heights.
 CoordinateSystem coordinate_system_of_wkt(std::string_view wkt);
 
+/// The part of a definition that describes the heights, without blanks and in capitals; empty if
+/// there is none.
+std::string heights_in(std::string_view wkt);
+
 /// Begins the comment that carries the definition of a cloud which is not of LAS, such as of E57.
 inline constexpr std::string_view kSystemComment = "coordinate system: ";
 

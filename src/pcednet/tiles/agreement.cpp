@@ -3,30 +3,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <cstdint>
 #include <iterator>
 #include <map>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <utility>
 
 #include "pcednet/core/error.h"
 #include "pcednet/detect/prepare.h"
 #include "pcednet/io/las/file.h"
-#include "pcednet/io/las/las.h"
 #include "pcednet/io/scanners.h"
+#include "pcednet/tiles/las_meaning.h"
 
 namespace pcednet::tiles {
 namespace {
 
 [[noreturn]] void refuse_pair(const IndexedInput& a, const IndexedInput& b,
-                              const std::string& difference) {
-  throw Error(ErrorKind::kUsage,
-              fmt::format("{} and {} {}. Convert them to one form first, or plan them one by one",
-                          a.input.path.string(), b.input.path.string(), difference));
+                              const std::string& difference,
+                              const std::string& way_out = "plan them one by one") {
+  throw Error(ErrorKind::kUsage, fmt::format("{} and {} {}: {}", a.input.path.string(),
+                                             b.input.path.string(), difference, way_out));
 }
 
 /// The columns of `a` that `b` does not have.
@@ -44,143 +41,177 @@ std::string only_in(const IndexedInput& a, const IndexedInput& b) {
                      more == 0 ? "" : fmt::format(" and {} more", more));
 }
 
+bool is_las(const IndexedInput& input) {
+  return !io::attached_las_file(input.outline).header.empty();
+}
+
+bool has(const IndexedInput& input, std::string_view column) {
+  return std::ranges::any_of(input.columns,
+                             [&](const auto& its) { return its.starts_with(column); });
+}
+
+/// Whether columns that one of them has can be 0 in the other: not so normals, labels, numbers of
+/// scans, and places of waveforms.
+bool can_be_zero(const IndexedInput& a, const IndexedInput& b) {
+  constexpr std::string_view kNever[] = {"normals", "labels", "scan (", "WavePacket"};
+  return std::ranges::all_of(
+      kNever, [&](std::string_view column) { return has(a, column) == has(b, column); });
+}
+
+/// Whether its colours are those of fields of LAS, if it has any.
+bool has_las_columns(const IndexedInput& input) {
+  return is_las(input) &&
+         has(input, "colours") == (find_attribute(input.outline, "Red") != nullptr);
+}
+
 void check_columns(const IndexedInput& a, const IndexedInput& b) {
   if (a.columns == b.columns) return;
-  const std::string difference = only_in(a, b) + only_in(b, a);
-  refuse_pair(a, b,
-              difference.empty() ? "have their columns in different orders"
-                                 : "have different columns" + difference);
+  const bool can = can_be_zero(a, b);
+  if (can && has_las_columns(a) && has_las_columns(b)) return;
+  std::string difference = only_in(a, b) + only_in(b, a);
+  difference = difference.empty() ? "have their columns in different orders"
+                                  : "have different columns" + difference;
+  const IndexedInput& other = is_las(a) ? b : a;
+  if (!can || is_las(other)) refuse_pair(a, b, difference);
+  std::filesystem::path las = other.input.path;
+  las.replace_extension(".laz");
+  refuse_pair(a, b, difference,
+              fmt::format("columns of LAZ may differ, and pcednet convert {} -o {} makes one",
+                          other.input.path.string(), las.string()));
 }
 
-/// What decides the values that the numbers of an extra field stand for (LASF_Spec 4).
-struct ExtraMeaning {
-  std::uint8_t type = 0;
-  std::string no_data = {};                     ///< bytes; empty: every number is data
-  std::vector<double> scale = {}, offset = {};  ///< of each number
+constexpr const char* kTimes = "GpsTime";
 
-  bool operator==(const ExtraMeaning&) const = default;
+/// The first of these, and how many there are.
+std::string some_of(const std::vector<std::string>& names) {
+  return names.front() + (names.size() == 1 ? "" : fmt::format(" and {} more", names.size() - 1));
+}
+
+/// What the inputs so far say, and which says it.
+struct Said {
+  std::vector<std::size_t> forms = {};              ///< see Plan
+  std::map<std::string, std::size_t> columns = {};  ///< how many inputs have each
+  std::map<std::string, std::pair<const IndexedInput*, ExtraMeaning>> meanings = {};
+  const IndexedInput* bytes = nullptr;  ///< has extra bytes without description
+  const IndexedInput* timed = nullptr;  ///< has GPS times
+  std::size_t system = 0;               ///< names most of the coordinate system
 };
 
-ExtraMeaning meaning_of(const io::LasField& field, std::string_view descriptor) {
-  using namespace io::las_descriptor;
-  constexpr std::size_t kNumber = 8;
-  ExtraMeaning meaning{.type = io::number_at<std::uint8_t>(descriptor, kType)};
-  if (meaning.type == 0) return meaning;  // bytes, and the options are how many
-  const auto options = io::number_at<std::uint8_t>(descriptor, kOptions);
-  if (options & kNoDataBit)
-    meaning.no_data = descriptor.substr(kNoData, kNumber * field.components);
-  for (std::size_t at = 0; at < kNumber * field.components; at += kNumber) {
-    meaning.scale.push_back(options & kScaleBit ? io::number_at<double>(descriptor, kScale + at)
-                                                : 1.0);
-    meaning.offset.push_back(options & kOffsetBit ? io::number_at<double>(descriptor, kOffset + at)
-                                                  : 0.0);
-  }
-  return meaning;
+/// Throws unless two systems are the same, as far as both are named.
+void check_systems(const IndexedInput& a, const IndexedInput& b) {
+  const std::string different = different_systems(a.outline, b.outline);
+  if (!different.empty()) refuse_pair(a, b, "have different coordinate systems: " + different);
 }
 
-/// The meaning of each extra field that is described.
-std::map<std::string, ExtraMeaning> extra_meanings(const io::LasFile& file) {
+void compare_extra_bytes(IndexedInput& input, const io::LasFile& file, Said& said) {
   std::vector<std::string> known;
-  std::map<std::string, ExtraMeaning> meanings;
-  const auto record =
-      std::find_if(file.records.begin(), file.records.end(),
-                   [](const io::LasRecord& r) { return r.is(io::kExtraBytesRecord); });
-  for (const io::LasField& field : io::las_extra_fields(file, known)) {
-    if (!field.descriptor) continue;
-    const std::string_view data = record->data;
-    meanings[field.name] =
-        meaning_of(field, data.substr(*field.descriptor, io::las_descriptor::kBytes));
+  const auto fields = io::las_extra_fields(file, known);
+  const bool all_described =
+      std::ranges::all_of(fields, [](const auto& field) { return field.descriptor.has_value(); });
+  if (!all_described && !said.bytes) said.bytes = &input;
+  for (auto& [name, meaning] : extra_meanings(file)) {
+    const auto [found, is_new] = said.meanings.try_emplace(name, &input, meaning);
+    if (!is_new && found->second.second != meaning) input.input.left_out.push_back(name);
   }
-  return meanings;
 }
 
-/// What the records say on the coordinate system, verbatim.
-std::map<std::uint16_t, std::string> system_records(const io::LasFile& file) {
-  std::map<std::uint16_t, std::string> found;
-  for (const auto* records : {&file.records, &file.extended_records}) {
-    for (const io::LasRecord& record : *records) {
-      if (record.user_id == io::kWktRecord.user_id) found[record.record_id] = record.data;
+void compare_times(IndexedInput& input, const io::LasFile& file, Said& said) {
+  if (!input.has_times) return;
+  if (!said.timed) {
+    said.timed = &input;
+  } else if (time_base(io::attached_las_file(said.timed->outline)) != time_base(file)) {
+    input.input.left_out.emplace_back(kTimes);
+  }
+}
+
+/// Compares input number `i` with those before.
+void check_las(std::vector<IndexedInput>& inputs, std::size_t i, Said& said) {
+  IndexedInput& input = inputs[i];
+  const io::LasFile file = io::attached_las_file(input.outline);
+  compare_extra_bytes(input, file, said);
+  compare_times(input, file, said);
+  const IndexedInput& named = inputs[said.system];
+  check_systems(named, input);
+  if (system_rank(file) > system_rank(io::attached_las_file(named.outline))) said.system = i;
+  if (i > 0 && (has_waveforms(file) || has_waveforms(io::attached_las_file(inputs[0].outline)))) {
+    refuse_pair(inputs[0], input,
+                "have waveforms, and the tiles could keep those of one file only");
+  }
+}
+
+/// Counts the columns; an input that brings a new one is a form.
+void count_columns(const std::vector<IndexedInput>& inputs, std::size_t i, Said& said) {
+  bool is_form = i == 0;
+  for (const Attribute& column : inputs[i].outline.attributes) {
+    is_form = ++said.columns[column.name] == 1 || is_form;
+  }
+  if (is_form) said.forms.push_back(i);
+}
+
+/// Notes the columns that are 0 in places.
+void note_columns(const std::vector<IndexedInput>& inputs, const Said& said, Plan& plan) {
+  constexpr std::string_view kOfVersions[] = {"ScanAngle", "ScanAngleRank", "Overlap",
+                                              "ScanChannel"};  // 0 means nothing, or are converted
+  std::vector<std::string> missing;
+  for (const auto& [name, count] : said.columns) {
+    const bool is_told = std::ranges::find(kOfVersions, name) == std::end(kOfVersions);
+    if (count < inputs.size() && is_told) missing.push_back(name);
+  }
+  if (missing.empty()) return;
+  plan.notes.push_back(
+      fmt::format("the inputs have different columns: the tiles have all, with 0 where an input "
+                  "has none: {}",
+                  fmt::join(missing, ", ")));
+}
+
+/// Notes the columns that an input gives another meaning than the first that has them.
+void note_left_out(const std::vector<IndexedInput>& inputs, const Said& said, Plan& plan) {
+  std::map<std::string, std::vector<std::string>> names;
+  for (const IndexedInput& input : inputs) {
+    for (const std::string& column : input.input.left_out) {
+      names[column].push_back(input.input.path.string());
     }
   }
-  return found;
-}
-
-/// The part of a WKT on heights, without blanks and in capitals; empty if there is none.
-std::string heights_in(const std::string& wkt) {
-  std::string text;
-  for (const char c : wkt) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (!std::isspace(byte)) text += static_cast<char>(std::toupper(byte));
+  for (const auto& [column, its] : names) {
+    const bool is_time = column == kTimes;
+    const IndexedInput& first = is_time ? *said.timed : *said.meanings.at(column).first;
+    plan.notes.push_back(fmt::format("{}: {} {} than in {}: 0 in the tiles", some_of(its), column,
+                                     is_time ? "counts from elsewhere (global encoding)"
+                                             : "has another type, scale, offset or no-data value",
+                                     first.input.path.string()));
   }
-  std::size_t begin = std::string::npos;
-  for (const char* keyword : {"VERT_CS[", "VERTCS[", "VERTCRS[", "VERTICALCRS["}) {
-    begin = std::min(begin, text.find(keyword));
+}
+
+/// Notes the inputs that name less of the coordinate system than another.
+void note_systems(const std::vector<IndexedInput>& inputs, const Said& said, Plan& plan) {
+  const int most = system_rank(io::attached_las_file(inputs[said.system].outline));
+  for (const int rank : {0, 1}) {
+    std::vector<std::string> names;
+    for (const IndexedInput& input : inputs) {
+      const bool is_such = system_rank(io::attached_las_file(input.outline)) == rank;
+      if (is_such && rank < most) names.push_back(input.input.path.string());
+    }
+    if (names.empty()) continue;
+    plan.notes.push_back(fmt::format("{}: no {} named: taken for that of {}", some_of(names),
+                                     rank == 0 ? "coordinate system is" : "system of heights is",
+                                     inputs[said.system].input.path.string()));
   }
-  return begin == std::string::npos ? "" : text.substr(begin);
 }
 
-/// Whether two systems are the same by their codes, written as they may be.
-bool are_same(const io::CoordinateSystem& a, const io::CoordinateSystem& b) {
-  if (a.epsg == 0 || a.epsg != b.epsg || a.vertical_epsg != b.vertical_epsg) return false;
-  return a.vertical_epsg > 0 || heights_in(a.wkt) == heights_in(b.wkt);
-}
-
-std::string name_of(const io::CoordinateSystem& system) {
-  if (system.epsg == 0) return system.wkt.empty() ? "none that is known" : "one without a code";
-  if (system.vertical_epsg > 0) return fmt::format("{}+{}", system.epsg, system.vertical_epsg);
-  return fmt::format("{}{}", system.epsg,
-                     heights_in(system.wkt).empty() ? "" : " and heights without a code");
-}
-
-void check_systems(const IndexedInput& a, const IndexedInput& b, const io::LasFile& first,
-                   const io::LasFile& other) {
-  if (system_records(first) == system_records(other)) return;
-  const auto its = io::las_coordinate_system(a.outline);
-  const auto others = io::las_coordinate_system(b.outline);
-  if (are_same(its, others)) return;
-  refuse_pair(a, b,
-              fmt::format("have different coordinate systems: EPSG {}, and {}", name_of(its),
-                          name_of(others)));
-}
-
-/// How GPS times count: from the week or adjusted, and by which offset (LAS 1.5).
-auto time_of(const io::LasFile& file) {
-  using namespace io::las_header;
-  const auto encoding = io::number_at<std::uint16_t>(file.header, kGlobalEncoding);
-  const bool has_offset = file.has_time_range() && (encoding & kTimeOffsetBit) != 0;
-  return std::tuple((encoding & kStandardTimeBit) != 0, has_offset,
-                    has_offset ? io::number_at<std::uint16_t>(file.header, kTimeOffset) : 0);
-}
-
-bool has_waveforms(const io::LasFile& file) {
-  // The records 100 to 354 describe them, the last holds them.
-  const auto is_of_waveforms = [](const io::LasRecord& record) {
-    return record.user_id == io::kWaveformsRecord.user_id &&
-           (record.record_id == io::kWaveformsRecord.record_id ||
-            (record.record_id >= 100 && record.record_id <= 354));
-  };
-  return std::any_of(file.records.begin(), file.records.end(), is_of_waveforms) ||
-         std::any_of(file.extended_records.begin(), file.extended_records.end(), is_of_waveforms);
-}
-
-void check_las(const IndexedInput& a, const IndexedInput& b, const io::LasFile& first,
-               const io::LasFile& other) {
-  const auto meanings = extra_meanings(first), others = extra_meanings(other);
-  for (const auto& [name, meaning] : meanings) {
-    const auto found = others.find(name);
-    if (found == others.end() || found->second == meaning) continue;
-    refuse_pair(a, b, fmt::format("give {} different scales, offsets or no-data values", name));
+/// Chooses the forms of the plan.
+void choose_forms(const std::vector<IndexedInput>& inputs, Said said, Plan& plan) {
+  if (said.forms.size() > 1 && said.bytes) {
+    refuse_pair(inputs[said.forms[0]], inputs[said.forms[1]],
+                fmt::format("have different columns, and {} has extra bytes that it does not "
+                            "describe",
+                            said.bytes->input.path.string()));
   }
-  check_systems(a, b, first, other);
-  const auto is_timed = [](const Attribute& column) { return column.name == "GpsTime"; };
-  const bool timed =
-      std::any_of(a.outline.attributes.begin(), a.outline.attributes.end(), is_timed);
-  if (timed && time_of(first) != time_of(other)) {
-    refuse_pair(a, b, "use different GPS time bases (global encoding)");
-  }
-  if (has_waveforms(first) || has_waveforms(other)) {
-    refuse_pair(a, b, "have waveforms, and the tiles could keep those of one file only");
-  }
+  note_columns(inputs, said, plan);
+  note_left_out(inputs, said, plan);
+  note_systems(inputs, said, plan);
+  const bool is_form = std::ranges::find(said.forms, said.system) != said.forms.end();
+  if (!is_form) said.forms.push_back(said.system);
+  plan.forms = std::move(said.forms);
 }
 
 /// The records beside points that `file` has and the first input has not, or otherwise.
@@ -236,27 +267,28 @@ void join_scanners(std::vector<IndexedInput>& inputs, Plan& plan) {
 
 }  // namespace
 
-void check_agreement(const std::vector<IndexedInput>& inputs, Plan& plan) {
+void check_agreement(std::vector<IndexedInput>& inputs, Plan& plan) {
   const IndexedInput& first = inputs.front();
   const io::LasFile las = io::attached_las_file(first.outline);
   bool besides = false;
   std::vector<std::string> lost;
-  for (const IndexedInput& input : inputs) {
-    const PointCloud& outline = input.outline;
+  Said said;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const PointCloud& outline = inputs[i].outline;
     besides = besides || !std::all_of(outline.foreign_elements.begin(),
                                       outline.foreign_elements.end(), io::is_las_element);
-    if (&input == &first) continue;
-    check_columns(first, input);
+    check_columns(first, inputs[i]);
     if (detect::declares_estimated_normals(first.outline) !=
         detect::declares_estimated_normals(outline)) {
-      refuse_pair(first, input, "differ in whether pcednet estimated their normals");
+      refuse_pair(first, inputs[i], "differ in whether pcednet estimated their normals");
     }
-    const io::LasFile other = io::attached_las_file(outline);
-    check_las(first, input, las, other);
-    add_lost(las, other, lost);
+    count_columns(inputs, i, said);
+    check_las(inputs, i, said);
+    add_lost(las, io::attached_las_file(outline), lost);
   }
   if (besides) plan.notes.emplace_back("other elements than points, such as faces, are left out");
   note_lost_records(first, std::move(lost), plan);
+  choose_forms(inputs, std::move(said), plan);
 }
 
 void choose_scanners(std::vector<IndexedInput>& inputs, const std::optional<Vec3>& viewpoint,

@@ -17,6 +17,7 @@
 #include "pcednet/io/las/file.h"
 #include "pcednet/io/las/las.h"
 #include "pcednet/io/scanners.h"
+#include "pcednet/tiles/forms.h"
 
 namespace pcednet::tiles {
 namespace {
@@ -79,6 +80,11 @@ void forget_extra_ranges(io::LasFile& file) {
       record.data.replace(at + kLeast, kScale - kLeast, kScale - kLeast, '\0');
     }
   }
+}
+
+bool has_times(const PointCloud& part) {
+  const Attribute* times = find_attribute(part, "GpsTime");
+  return times && std::ranges::any_of(times->bytes, [](std::byte b) { return b != std::byte{0}; });
 }
 
 /// A part as read_cloud() gives a whole file, without its warnings.
@@ -153,6 +159,7 @@ PointCloud read_chunk(const io::PartReader& reader, const PlannedInput& input, s
   if (digest_of(part) != input.chunks[chunk].digest) {
     changed(input.path, fmt::format("other points in chunk {}", chunk));
   }
+  for (const std::string& column : input.left_out) erase_attribute(part, column);
   if (input.scans > 0) number_scans(input, part);
   return finished(std::move(part));
 }
@@ -180,7 +187,7 @@ std::unique_ptr<io::PartReader> open_chunks(const fs::path& path) {
   auto reader = format.is_tiled() ? format.open_parts(std::move(file), kChunkPoints) : nullptr;
   if (reader) return reader;
   fs::path readable = path;
-  readable.replace_extension(format.name == "PLY" ? ".laz" : ".ply");
+  readable.replace_extension(".laz");
   throw Error(ErrorKind::kUsage,
               fmt::format("{0}: tiles are read from LAS, LAZ and binary PLY without lists: "
                           "pcednet convert {0} -o {1} makes one",
@@ -225,8 +232,10 @@ void for_each_chunk(const PlannedInput& input, const std::function<bool(const Ch
 
 IndexedInput index_input(const fs::path& path, const Progress* progress,
                          std::vector<std::string>& notes,
-                         const std::function<void(const PointCloud&)>& see) {
+                         const std::function<void(const PointCloud&)>& see,
+                         std::optional<bool> narrow_colours) {
   const auto reader = open_chunks(path);
+  if (narrow_colours) reader->set_narrow_colours(*narrow_colours);
   IndexedInput indexed;
   indexed.input = {.path = path,
                    .bytes = io::InputFile(path).size(),
@@ -242,6 +251,7 @@ IndexedInput index_input(const fs::path& path, const Progress* progress,
     io::finish_part(part, tally);
     with_name_in_errors(path.string(), [&] { check_extent(part.positions); });
     withheld += io::count_withheld(part);
+    indexed.has_times = indexed.has_times || has_times(part);
     see(part);
     stage.advance(part.size());
     const bool is_first = indexed.input.chunks.empty();
@@ -262,8 +272,13 @@ IndexedInput index_input(const fs::path& path, const Progress* progress,
 }
 
 PointCloud outline_of(const Plan& plan) {
-  const PlannedInput& input = plan.inputs.front();
-  PointCloud outline = without_points(read_chunk(*open_planned(input), input, 0));
+  std::vector<PointCloud> outlines;
+  for (const std::size_t form : plan.forms) {
+    const PlannedInput& input = plan.inputs[form];
+    outlines.push_back(without_points(read_chunk(*open_planned(input), input, 0)));
+  }
+  PointCloud outline =
+      outlines.size() == 1 ? std::move(outlines.front()) : merge_outlines(std::move(outlines));
   if (plan.estimates) detect::set_estimated_normals(outline, true);
   if (!io::are_same(plan.scanners, outline.scanners)) io::set_scanners(plan.scanners, outline);
   std::erase_if(outline.foreign_elements,

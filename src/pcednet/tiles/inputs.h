@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -43,14 +44,17 @@ struct IndexedInput {
   PlannedInput input;
   PointCloud outline;                ///< its columns and its content beside points, without points
   std::vector<std::string> columns;  ///< as texts, to compare
+  bool has_times = false;            ///< a GPS time of LAS is not 0
 };
 
-/// Reads the whole file and lists its chunks; `see` gets each, finished.
+/// Reads the whole file and lists its chunks; `see` gets each, finished. `narrow_colours`, if
+/// given, is that of the whole of which the file is a part.
 IndexedInput index_input(const std::filesystem::path& path, const Progress* progress,
                          std::vector<std::string>& notes,
-                         const std::function<void(const PointCloud&)>& see);
+                         const std::function<void(const PointCloud&)>& see,
+                         std::optional<bool> narrow_colours = {});
 
-/// The content of the tiles beside points, from the first input, and their columns.
+/// The content of the tiles beside points, from the plan's forms, and their columns.
 PointCloud outline_of(const Plan& plan);
 
 /// Chunk `chunk` of a file that is not an input of the plan, finished.

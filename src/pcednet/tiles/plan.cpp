@@ -100,9 +100,9 @@ std::string text_of(const PlannedInput& input, const Paths& paths) {
   }
   return fmt::format(
       "{{\"path\":{},\"bytes\":{},\"points\":{},\"narrow_colours\":{},\"scans\":[{},{}],"
-      "\"chunks\":{}}}",
+      "\"left_out\":{},\"chunks\":{}}}",
       to_text(Json(paths.written(input.path))), input.bytes, input.points(), input.narrow_colours,
-      input.first_scan, input.scans, json_lines(chunks, "   "));
+      input.first_scan, input.scans, to_text(Json(input.left_out)), json_lines(chunks, "   "));
 }
 
 PlannedInput input_of(const Json& j, const Paths& paths) {
@@ -111,7 +111,8 @@ PlannedInput input_of(const Json& j, const Paths& paths) {
                      .narrow_colours = j.at("narrow_colours"),
                      .first_scan = j.at("scans").at(0),
                      .scans = j.at("scans").at(1),
-                     .chunks = {}};
+                     .chunks = {},
+                     .left_out = j.at("left_out").get<std::vector<std::string>>()};
   for (const Json& chunk : j.at("chunks")) {
     input.chunks.push_back({.points = chunk.at(0),
                             .without_place = chunk.at(1),
@@ -209,6 +210,7 @@ std::string text_of(const Plan& plan, const Paths& paths) {
       {"places", to_text(Json(plan.places))},
       {"box", to_text(json_of(plan.box))},
       {"las_steps", to_text(Json(plan.las_steps))},
+      {"forms", to_text(Json(plan.forms))},
       {"scanners", to_text(json_of(plan.scanners))},
       {"model", to_text(json_of(plan.model, paths))},
       {"scales", to_text(Json{{"s_min", plan.s_min}, {"s_max", plan.s_max}})},
@@ -240,6 +242,7 @@ Plan plan_of(const Json& j, const Paths& paths, std::string& member) {
   plan.places = at("places");
   plan.box = box_in(at("box"));
   plan.las_steps = at("las_steps").get<std::vector<double>>();
+  plan.forms = at("forms").get<std::vector<std::size_t>>();
   plan.scanners = places_in(at("scanners"));
   plan.model = model_of(at("model"), paths);
   plan.s_min = at("scales").at("s_min");
@@ -301,6 +304,9 @@ std::string unsound_member(const Plan& plan) {
   if (plan.memory == 0) return "memory";
   if (!plan.las_steps.empty() && plan.las_steps.size() != 6) return "las_steps";
   if (plan.inputs.empty() || !are_sound(plan.inputs, plan)) return "inputs";
+  const bool are_inputs =
+      std::ranges::all_of(plan.forms, [&](std::size_t form) { return form < plan.inputs.size(); });
+  if (plan.forms.empty() || !are_inputs) return "forms";
   if (plan.tiles.empty()) return "tiles";
   return "";
 }

@@ -31,6 +31,7 @@ struct PlannedInput {
   /// otherwise 0, and points have the attribute `scan` that the file gives them, if any.
   std::int32_t first_scan = 0, scans = 0;
   std::vector<Chunk> chunks;
+  std::vector<std::string> left_out = {};  ///< columns that mean something else in the tiles
 
   std::size_t points() const;
 };
@@ -57,6 +58,9 @@ struct Plan {
   std::string digest = {};          ///< SHA-256 of its file
   std::string version = {};         ///< of the program that made it
   std::vector<PlannedInput> inputs = {};
+  /// The inputs, by number, that together have the columns and the header of the tiles: the first,
+  /// and of LAS those with more.
+  std::vector<std::size_t> forms = {0};
   /// Scale and offset of x, y and z in the tiles, where all inputs are LAS or LAZ; otherwise empty.
   std::vector<double> las_steps = {};
   BoundingBox box = {};  ///< of all points with a place

@@ -14,6 +14,7 @@
 #include "pcednet/formats/parts.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/io/parts.h"
+#include "pcednet/tiles/forms.h"
 #include "pcednet/tiles/inputs.h"
 #include "pcednet/tiles/sha256.h"
 #include "pcednet/tiles/sort_inputs.h"
@@ -140,7 +141,8 @@ TileCloud read_tile(const Plan& plan, std::size_t tile, const Progress* progress
     const auto is_wanted = [&](const Chunk& chunk) {
       return box.meets(chunk.box) || (tile == 0 && chunk.without_place > 0);
     };
-    for_each_chunk(input, is_wanted, progress, [&](const PointCloud& part, std::size_t first) {
+    for_each_chunk(input, is_wanted, progress, [&](PointCloud& part, std::size_t first) {
+      take_columns(points.core, part);
       const Chosen chosen = choose(part, plan, tile, box);
       append_points(part, chosen.core, points.core);
       append_surface(part, chosen.around, points.all);

@@ -11,6 +11,7 @@
 #include "pcednet/formats/parts.h"
 #include "pcednet/io/parts.h"
 #include "pcednet/spatial/curve_order.h"
+#include "pcednet/tiles/forms.h"
 #include "pcednet/tiles/inputs.h"
 
 namespace pcednet::tiles {
@@ -20,6 +21,10 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kOpenFiles = 256;
 constexpr const char* kUnsorted = "unsorted_";
+
+bool has_narrow_colours(const Plan& plan) {
+  return std::ranges::all_of(plan.inputs, &PlannedInput::narrow_colours);
+}
 
 /// The files of the copies: LAS and PLY, which are read from any place.
 fs::path copy_path(const fs::path& folder, const Plan& plan, std::size_t tile, const char* prefix) {
@@ -128,6 +133,7 @@ void scatter(const fs::path& folder, const Plan& plan, const PointCloud& outline
   for (const PlannedInput& input : plan.inputs) {
     const auto use = [&](PointCloud& part, std::size_t first) {
       if (numbered) part.attributes.push_back(number_column(before + first, part.size()));
+      take_columns(outline, part);
       std::vector<std::vector<std::uint32_t>> chosen(copies.size());
       for (std::uint32_t i = 0; i < part.size(); ++i) {
         const std::size_t id = tile_of(part.positions[i]);
@@ -152,7 +158,7 @@ void scatter(const fs::path& folder, const Plan& plan, const PointCloud& outline
 void sort_file(const fs::path& from, const fs::path& to, const Plan& plan,
                const PointCloud& outline) {
   const auto reader = open_chunks(from);
-  reader->set_narrow_colours(plan.inputs.front().narrow_colours);
+  reader->set_narrow_colours(has_narrow_colours(plan));
   PointCloud all = outline;
   for (std::size_t p = 0; p < reader->parts(); ++p) {
     const PointCloud part = read_finished(*reader, p);
@@ -194,11 +200,12 @@ void sort_inputs(const SortRequest& request, Plan& plan, const Progress* progres
     sort_file(copies.unsorted(id), path, plan, outline);
     copies.count_sorted();
     std::vector<std::string> known;
-    sorted.push_back(index_input(path, progress, known, [](const PointCloud&) {}).input);
-    sorted.back().narrow_colours = plan.inputs.front().narrow_colours;
+    const auto see = [](const PointCloud&) {};
+    sorted.push_back(index_input(path, progress, known, see, has_narrow_colours(plan)).input);
   }
   copies.keep();
   plan.inputs = std::move(sorted);
+  plan.forms = {0};
 }
 
 }  // namespace pcednet::tiles

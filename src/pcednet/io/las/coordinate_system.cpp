@@ -108,13 +108,23 @@ CoordinateSystem las_coordinate_system(const PointCloud& cloud) {
   return coordinate_system_of_text(wkt_of_comments(cloud.comments), true);
 }
 
+bool names_system(const LasFile& file) {
+  const CoordinateSystem system = coordinate_system_of(file);
+  return system.epsg > 0 || !system.wkt.empty() || has_geo_keys(file);
+}
+
+bool names_heights(const LasFile& file) {
+  const CoordinateSystem system = coordinate_system_of(file);
+  return system.vertical_epsg > 0 || !heights_in(system.wkt).empty();
+}
+
 std::vector<std::string> las_element_losses(const PointCloud& cloud) {
   const auto& elements = cloud.foreign_elements;
   if (std::none_of(elements.begin(), elements.end(), is_las_element)) return {};
   std::vector<std::string> losses;
   const LasFile file = attached_las_file(cloud);
   const CoordinateSystem system = coordinate_system_of(file);
-  if (system.epsg > 0 || !system.wkt.empty() || has_geo_keys(file)) {
+  if (names_system(file)) {
     const std::string code = code_text(system);
     losses.push_back(code.empty() ? "coordinate system" : "coordinate system " + code);
   }

@@ -122,6 +122,10 @@ std::uint64_t las_points_limit(const InputFile& file, const LasFile& las);
 /// From its WKT, otherwise from its GeoTIFF keys; never asks PROJ.
 CoordinateSystem coordinate_system_of(const LasFile& file);
 
+/// Whether the records name a system, with a code or without; and one of heights.
+bool names_system(const LasFile& file);
+bool names_heights(const LasFile& file);
+
 /// Sets the beginning of the extended records in the header to `begin`; false if it has no field
 /// for it.
 bool place_extended_records(LasFile& file, std::uint64_t begin);
