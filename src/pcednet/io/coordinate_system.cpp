@@ -97,6 +97,7 @@ CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
   bool heights_alone = false;
   bool cartesian = false;  // as geocentric systems are, which share a keyword with geographic ones
   std::optional<LengthUnit> common;  // of all lengths so far
+  double least = 0.0, most = 0.0;    // metres of their units
   visit_wkt(wkt, [&](const std::vector<WktNode>& open) {
     const WktNode& node = open.back();
     const std::string_view parent = open.size() > 1 ? std::string_view(open.end()[-2].keyword) : "";
@@ -117,9 +118,13 @@ CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
     // An ellipsoid and the parameters of a projection may have other units than the coordinates.
     const bool is_length =
         (node.keyword == "lengthunit" && !is_one_of(parent, {"ellipsoid", "parameter"})) ||
-        (node.keyword == "unit" && is_one_of(parent, {"projcs", "vert_cs", "geoccs", "local_cs"}));
+        (node.keyword == "unit" &&
+         is_one_of(parent, {"projcs", "vert_cs", "vertcs", "geoccs", "local_cs"}));
     if (!is_length || node.values.size() < 2) return;
-    const LengthUnit unit = unit_of_metres(parse_double(node.values[1]).value_or(0.0));
+    const double metres = parse_double(node.values[1]).value_or(0.0);
+    least = most > 0.0 ? std::min(least, metres) : metres;
+    most = std::max(most, metres);
+    const LengthUnit unit = unit_of_metres(metres);
     common = common.value_or(unit) == unit ? unit : LengthUnit::kNone;
   });
   if (heights_alone) {
@@ -129,8 +134,15 @@ CoordinateSystem coordinate_system_of_wkt(std::string_view wkt) {
   system.epsg = whole ? whole : horizontal;
   if (!whole) system.vertical_epsg = heights;
   // Degrees are no lengths, though heights above them are.
-  if (!system.geographic) system.unit = common.value_or(LengthUnit::kNone);
+  if (system.geographic) return system;
+  system.unit = common.value_or(LengthUnit::kNone);
+  system.stretched = is_stretched(least, most);
   return system;
+}
+
+bool is_stretched(double a, double b) {
+  constexpr double kMost = 1.001;  // the US survey foot and the foot are one here
+  return std::min(a, b) > 0.0 && std::max(a, b) > kMost * std::min(a, b);
 }
 
 std::string heights_in(std::string_view wkt) {

@@ -15,6 +15,7 @@ struct CoordinateSystem {
   LengthUnit unit = LengthUnit::kNone;  ///< of all its lengths; kNone: another, or they differ
   int vertical_epsg = 0;    ///< code of the heights if `epsg` does not cover them; 0: unknown
   bool geographic = false;  ///< x and y are angles: longitude and latitude
+  bool stretched = false;   ///< heights have another unit than x and y, beyond a thousandth
 };
 
 /// EPSG has no codes of coordinate systems below and beyond these; 32767 says that there is none.
@@ -31,6 +32,9 @@ std::string code_text(const CoordinateSystem& system);
 /// of a compound system without one, the codes are those of its parts. That of heights alone has no
 /// unit and no code but that of the heights.
 CoordinateSystem coordinate_system_of_wkt(std::string_view wkt);
+
+/// Whether units of so many metres differ by more than a thousandth; 0 is an unknown one.
+bool is_stretched(double a, double b);
 
 /// The part of a definition that describes the heights, without blanks and in capitals; empty if
 /// there is none.

@@ -179,6 +179,38 @@ TEST(LasCoordinateSystem, InDegreesIsAWarning) {
   EXPECT_TRUE(warnings_with({"LASF_Projection", 2112, kWkt}).empty());
 }
 
+TEST(LasCoordinateSystem, WithHeightsInAnotherUnitIsAWarning) {
+  const Scratch scratch;
+  const auto warned = [&](unsigned id, const std::string& data) {
+    LasTestFile file{.rows = las_test_rows(6, 3)};
+    file.records = {{"LASF_Projection", id, data}};
+    const auto warnings = scratch.read("a.las", las_bytes(file)).warnings;
+    return warnings.size() == 1 && contains(warnings[0], "heights have another unit than x and y");
+  };
+  const auto of_wkt = [&](const std::string& plane, const std::string& heights) {
+    const std::string system = R"(PROJCS["plane",GEOGCS["g",UNIT["degree",0.0174]],UNIT[)" + plane;
+    const std::string up = R"(["heights",UNIT[)" + heights + "]]";
+    EXPECT_EQ(warned(2112, "COMPD_CS[\"both\"," + system + "]],VERT_CS" + up + "]"),
+              warned(2112, system + "]],VERTCS" + up));  // as ESRI has it
+    return warned(2112, "COMPD_CS[\"both\"," + system + "]],VERT_CS" + up + "]");
+  };
+  const std::string metre = R"("metre",1)", survey = R"("US survey foot",0.304800609601219)";
+  EXPECT_TRUE(of_wkt(survey, metre));
+  EXPECT_TRUE(of_wkt(metre, survey));
+  EXPECT_FALSE(of_wkt(metre, metre));
+  EXPECT_FALSE(of_wkt(survey, R"("foot",0.3048)"));
+  EXPECT_FALSE(of_wkt(survey, R"("unknown",0)"));
+  const auto of_keys = [&](unsigned plane, unsigned heights) {
+    return warned(34735,
+                  keys({1, 1, 0, 3, 3072, 0, 1, 2263, 3076, 0, 1, static_cast<std::uint16_t>(plane),
+                        4099, 0, 1, static_cast<std::uint16_t>(heights)}));
+  };
+  EXPECT_TRUE(of_keys(9003, 9001));
+  EXPECT_FALSE(of_keys(9003, 9003));
+  EXPECT_FALSE(of_keys(9003, 9002));
+  EXPECT_FALSE(of_keys(9003, 1234));
+}
+
 TEST(LasCoordinateSystem, SurvivesBrokenKeys) {
   const Scratch scratch;
   for (const auto& data :

@@ -60,6 +60,8 @@ CoordinateSystem coordinate_system_of_keys(std::string_view data, bool ask_for_u
   if (system.geographic) return system;
   const int unit = value(kProjectedUnit, 0), heights = value(kVerticalUnit, unit);
   if (unit > 0 && heights == unit) system.unit = unit_of_code(unit);
+  system.stretched =
+      is_stretched(entry_of(unit_of_code(unit)).metres, entry_of(unit_of_code(heights)).metres);
   if (unit == 0 && ask_for_unit) system.unit = unit_of_system(system, heights);
   return system;
 }

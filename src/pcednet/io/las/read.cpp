@@ -26,9 +26,14 @@ class LasSource {
       check_las_points(file, las_, warnings);
     }
     comments_ = take_las_comments(las_);
-    if (coordinate_system_of(las_).geographic) {
+    const CoordinateSystem system = coordinate_system_of(las_);
+    if (system.geographic) {
       warnings.emplace_back(
           "coordinates are in degrees: lengths across and up differ; project the cloud first");
+    } else if (system.stretched) {
+      warnings.emplace_back(
+          "heights have another unit than x and y, by its coordinate system: angles and lengths "
+          "are wrong; bring them to one unit first");
     }
     LasRecordSink(las_, 0, warnings);  // warns of faulty extra bytes
   }
