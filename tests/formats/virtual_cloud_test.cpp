@@ -120,8 +120,10 @@ TEST_F(VirtualCloud, WarnsOfSeveralSystemsAndOfOneThatIsUnknown) {
   if (io::has_projections()) {
     const auto mixed =
         write(scratch, {write_las(scratch, "a.las", kUtm), write_las(scratch, "b.las", "")});
-    ASSERT_FALSE(mixed.remarks.empty());
+    ASSERT_EQ(mixed.remarks.size(), 2U);
     EXPECT_TRUE(io::contains(mixed.remarks[0], "not all of one coordinate system"));
+    EXPECT_EQ(mixed.remarks[1],
+              "1 of 2 files name no coordinate system, such as " + scratch.path("b.las").string());
   }
   const auto unknown = write(scratch, {write_las(scratch, "a.las", "PROJCS[\"x\"]")});
   ASSERT_EQ(unknown.remarks.size(), 1U);

@@ -146,13 +146,24 @@ std::vector<std::string> remarks_on(std::span<const VirtualFile> files, std::siz
   if (systems.size() > 1) {
     remarks.emplace_back("the files are not all of one coordinate system: QGIS takes the first");
   }
-  const bool named = std::any_of(files.begin(), files.end(), [](const VirtualFile& file) {
-    return file.coordinate_system.epsg > 0 || !file.coordinate_system.wkt.empty();
-  });
-  if (named && systems.count("") > 0) {
+  const auto is_unnamed = [](const VirtualFile& file) {
+    const io::CoordinateSystem& system = file.coordinate_system;
+    return file.points > 0 && system.epsg == 0 && system.wkt.empty();
+  };
+  const auto unnamed = static_cast<std::size_t>(std::ranges::count_if(files, is_unnamed));
+  const auto unknown =
+      static_cast<std::size_t>(std::ranges::count_if(
+          items, [](const OrderedJson& item) { return item["properties"]["proj:wkt2"] == ""; })) -
+      unnamed;
+  if (unknown > 0) {
     remarks.emplace_back(io::has_projections()
                              ? "PROJ does not know the coordinate system: it is left out"
                              : "without PROJ: the coordinate system is left out");
+  }
+  if (unnamed > 0 && unnamed < items.size()) {
+    const std::string first = std::ranges::find_if(files, is_unnamed)->path.string();
+    remarks.push_back(fmt::format("{} of {} files name no coordinate system, such as {}", unnamed,
+                                  files.size(), first));
   }
   return remarks;
 }
