@@ -36,10 +36,11 @@ bool is_prose(const fs::path& file) {
   }
 }
 
-/// Whether the file of a folder holds points: a mesh is often that of a cloud beside it.
+/// Whether the file of a folder holds points: a mesh is often that of a cloud beside it, and a
+/// hidden file something else, such as the "._scan.las" that macOS puts beside scan.las.
 bool is_of_points(const fs::path& file) {
   const formats::Format* format = formats::find_format(file);
-  return format && !format->is_mesh;
+  return format && !format->is_mesh && !file.filename().string().starts_with('.');
 }
 
 std::vector<fs::path> files_in(const fs::path& folder, std::vector<fs::path>& passed_over) {

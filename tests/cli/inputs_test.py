@@ -53,6 +53,16 @@ class Inputs(CliTest):
                 self.assertNotIn(work, done.stderr)
             run("classify", self.folder / "a.ply", "-o", self.folder / "out.ply", "--overwrite")
 
+    def test_hidden_files_of_a_folder_are_no_inputs(self):
+        (self.folder / "in").mkdir()
+        self.cloud("in/a.ply")
+        hidden = self.folder / "in/._a.ply"
+        hidden.write_bytes(bytes(100))
+        run("classify", self.folder / "in", "--out-dir", self.folder / "out")
+        self.assertEqual(self.names("out"), ["a_edges.ply"])
+        run("tiles", "plan", self.folder / "in", "-o", self.folder / "p.json")
+        run("classify", hidden, "--out-dir", self.folder / "out", expect=3)
+
     def test_results_beside_the_inputs_are_no_inputs_of_another_folder(self):
         self.cloud("in/s.ply")
         run("classify", self.folder / "in")
