@@ -178,7 +178,8 @@ class Outputs(CliTest):
                 (3, f"{folder}: is a folder", "convert", folder, "-o", self.folder / "x.ply"),
                 (3, f"{folder}: is a folder", "annotate", folder, "--no-browser"),
                 (2, f"{folder}: is a folder; lines takes one cloud", "lines", folder, "-o", self.folder / "x.obj"),
-                (2, "city.vpc: names other files; lines takes one cloud", "lines", "city.vpc", "-o", "x.obj"),
+                (2, "city.vpc: names other files; lines takes one cloud: give its files one by one, or make one of "
+                    "them with pcednet tiles plan, run and join", "lines", "city.vpc", "-o", "x.obj"),
                 (2, f"{folder}: is a folder", "annotate", file, "--no-browser", "--project",
                  folder),
                 (1, "there is no folder", "annotate", file, "--no-browser", "--project",

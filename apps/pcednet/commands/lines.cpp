@@ -49,8 +49,11 @@ void check_input(const std::string& input) {
                            : formats::is_virtual_cloud(input) ? "names other files"
                                                               : nullptr;
   if (!what) return;
-  throw Error(ErrorKind::kUsage,
-              fmt::format("{}: {}; lines takes one cloud: give its files one by one", input, what));
+  throw Error(
+      ErrorKind::kUsage,
+      fmt::format("{}: {}; lines takes one cloud: give its files one by one, or make one of "
+                  "them with pcednet tiles plan, run and join",
+                  input, what));
 }
 
 /// Lines that were drawn before are no points of a surface.
