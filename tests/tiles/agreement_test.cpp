@@ -217,6 +217,14 @@ TEST_F(Agreement, LeavesOutTimesThatCountFromElsewhere) {
   std::vector<IndexedInput> inputs = {encoded("a.las", untimed, 16), encoded("b.las", timed, 17)};
   check_agreement(inputs, plan_);
   EXPECT_TRUE(inputs[0].input.left_out.empty() && inputs[1].input.left_out.empty());
+  EXPECT_EQ(plan_.forms, (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(plan_.timed, 1u);
+  // Only the header of the first can hold an offset.
+  timed.minor = 5;
+  inputs = {encoded("a.las", untimed, 17), encoded("b.las", timed, 81)};
+  check_agreement(inputs, plan_);
+  EXPECT_EQ(inputs[1].input.left_out, std::vector<std::string>{"GpsTime"});
+  EXPECT_EQ(plan_.timed, 0u);
 }
 
 TEST_F(Agreement, RefusesSeveralInputsWithWaveforms) {

@@ -31,7 +31,7 @@ const Attribute& column(const PointCloud& cloud, const char* name) {
 }
 
 TEST_F(Forms, GiveAPartTheColumnsOfAll) {
-  const PointCloud all = merge_outlines({outline(1), outline(8)});
+  const PointCloud all = merge_outlines({outline(1), outline(8)}, 0);
   EXPECT_EQ(io::attached_las_file(all).point_format(), 8u);
   const PointCloud before = points(1, 300);
   PointCloud part = before;
@@ -51,7 +51,7 @@ TEST_F(Forms, GiveAPartTheColumnsOfAll) {
 TEST_F(Forms, LeaveAPartOfTheirColumnsAsItIs) {
   PointCloud part = points(7, 300);
   const PointCloud before = part;
-  take_columns(merge_outlines({outline(1), outline(7)}), part);
+  take_columns(merge_outlines({outline(1), outline(7)}, 0), part);
   EXPECT_EQ(part.colours, before.colours);
   for (const Attribute& attribute : before.attributes) {
     EXPECT_EQ(column(part, attribute.name.c_str()).bytes, attribute.bytes);

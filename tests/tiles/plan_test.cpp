@@ -31,7 +31,7 @@ class PlanFile : public testing::Test, protected test::OwnFolder {
                     {"GpsTime"}},
                    {"/elsewhere/b.laz", 99, false, 1, 1, {{10, 10, {}, "d2"}, {1, 0, {}, "d3"}}}};
     plan.las_steps = {0.01, 0, 0.01, 0, 0.01, 0.1};
-    plan.forms = {0, 1};
+    plan.forms = {0, 1}, plan.timed = 1;
     plan.places = 50000;
     plan.box = {{0, 1, 2}, {3, 4, 0.1 + 0.2}};
     plan.model = {"general", "/models/general.safetensors", "abc", false, true, false};
@@ -73,6 +73,7 @@ TEST_F(PlanFile, ComesBackAsItWas) {
   EXPECT_EQ(back.places, 50000u);
   EXPECT_EQ(back.las_steps, plan.las_steps);
   EXPECT_EQ(back.forms, plan.forms);
+  EXPECT_EQ(back.timed, 1u);
   EXPECT_EQ(back.inputs[0].left_out, plan.inputs[0].left_out);
   EXPECT_TRUE(back.inputs[1].left_out.empty());
   EXPECT_EQ(back.box.max, plan.box.max);
@@ -177,6 +178,9 @@ TEST_F(PlanFile, SaysWhatIsWrongInAPlainSentence) {
     wrong["forms"] = forms;
     EXPECT_EQ(said(wrong), none + ": \"forms\" is damaged");
   }
+  wrong = whole;
+  wrong["timed"] = 2;
+  EXPECT_EQ(said(wrong), none + ": \"timed\" is damaged");
   wrong = whole;
   wrong["pyramids"][0]["levels"][0][1] = "heap";
   EXPECT_EQ(said(wrong), none + ": \"pyramids\" is missing or damaged");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -92,9 +93,9 @@ struct Said {
   std::vector<std::size_t> forms = {};              ///< see Plan
   std::map<std::string, std::size_t> columns = {};  ///< how many inputs have each
   std::map<std::string, std::pair<const IndexedInput*, ExtraMeaning>> meanings = {};
-  const IndexedInput* bytes = nullptr;  ///< has extra bytes without description
-  const IndexedInput* timed = nullptr;  ///< has GPS times
-  std::size_t system = 0;               ///< names most of the coordinate system
+  const IndexedInput* bytes = nullptr;    ///< has extra bytes without description
+  std::optional<std::size_t> timed = {};  ///< the first with GPS times
+  std::size_t system = 0;                 ///< names most of the coordinate system
 };
 
 /// Throws unless two systems are the same, as far as both are named.
@@ -115,13 +116,15 @@ void compare_extra_bytes(IndexedInput& input, const io::LasFile& file, Said& sai
   }
 }
 
-void compare_times(IndexedInput& input, const io::LasFile& file, Said& said) {
-  if (!input.has_times) return;
-  if (!said.timed) {
-    said.timed = &input;
-  } else if (time_base(io::attached_las_file(said.timed->outline)) != time_base(file)) {
-    input.input.left_out.emplace_back(kTimes);
-  }
+/// The offset of LAS 1.5 can only be that of the first input, whose header the tiles have.
+void compare_times(std::vector<IndexedInput>& inputs, std::size_t i, Said& said) {
+  if (!inputs[i].has_times) return;
+  const auto base_of = [&](std::size_t input) {
+    return time_base(io::attached_las_file(inputs[input].outline));
+  };
+  const TimeBase base = base_of(i);
+  if (!said.timed && (!base.has_offset || base == base_of(0))) said.timed = i;
+  if (!said.timed || base != base_of(*said.timed)) inputs[i].input.left_out.emplace_back(kTimes);
 }
 
 /// Compares input number `i` with those before.
@@ -129,7 +132,7 @@ void check_las(std::vector<IndexedInput>& inputs, std::size_t i, Said& said) {
   IndexedInput& input = inputs[i];
   const io::LasFile file = io::attached_las_file(input.outline);
   compare_extra_bytes(input, file, said);
-  compare_times(input, file, said);
+  compare_times(inputs, i, said);
   const IndexedInput& named = inputs[said.system];
   check_systems(named, input);
   if (system_rank(file) > system_rank(io::attached_las_file(named.outline))) said.system = i;
@@ -174,7 +177,8 @@ void note_left_out(const std::vector<IndexedInput>& inputs, const Said& said, Pl
   }
   for (const auto& [column, its] : names) {
     const bool is_time = column == kTimes;
-    const IndexedInput& first = is_time ? *said.timed : *said.meanings.at(column).first;
+    const IndexedInput& first =
+        is_time ? inputs[said.timed.value_or(0)] : *said.meanings.at(column).first;
     plan.notes.push_back(fmt::format("{}: {} {} than in {}: 0 in the tiles", some_of(its), column,
                                      is_time ? "counts from elsewhere (global encoding)"
                                              : "has another type, scale, offset or no-data value",
@@ -209,8 +213,10 @@ void choose_forms(const std::vector<IndexedInput>& inputs, Said said, Plan& plan
   note_columns(inputs, said, plan);
   note_left_out(inputs, said, plan);
   note_systems(inputs, said, plan);
-  const bool is_form = std::ranges::find(said.forms, said.system) != said.forms.end();
-  if (!is_form) said.forms.push_back(said.system);
+  plan.timed = said.timed.value_or(0);
+  for (const std::size_t input : {said.system, plan.timed}) {
+    if (std::ranges::count(said.forms, input) == 0) said.forms.push_back(input);
+  }
   plan.forms = std::move(said.forms);
 }
 

@@ -47,10 +47,10 @@ Attribute column_of(const Attribute& wanted, PointCloud& part) {
 
 }  // namespace
 
-PointCloud merge_outlines(std::vector<PointCloud> outlines) {
+PointCloud merge_outlines(std::vector<PointCloud> outlines, std::size_t timed) {
   std::vector<io::LasFile> files;
   for (const PointCloud& outline : outlines) files.push_back(io::attached_las_file(outline));
-  const io::LasFile merged = io::merge_las_files(files);
+  const io::LasFile merged = io::merge_las_files(files, timed);
   std::vector<std::string> known;
   PointCloud outline = std::move(outlines.front());
   const Attribute* scan = find_attribute(outline, "scan");  // of the plan, not of the file

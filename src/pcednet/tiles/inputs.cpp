@@ -277,8 +277,10 @@ PointCloud outline_of(const Plan& plan) {
     const PlannedInput& input = plan.inputs[form];
     outlines.push_back(without_points(read_chunk(*open_planned(input), input, 0)));
   }
-  PointCloud outline =
-      outlines.size() == 1 ? std::move(outlines.front()) : merge_outlines(std::move(outlines));
+  const auto timed = std::ranges::find(plan.forms, plan.timed) - plan.forms.begin();
+  PointCloud outline = outlines.size() == 1
+                           ? std::move(outlines.front())
+                           : merge_outlines(std::move(outlines), static_cast<std::size_t>(timed));
   if (plan.estimates) detect::set_estimated_normals(outline, true);
   if (!io::are_same(plan.scanners, outline.scanners)) io::set_scanners(plan.scanners, outline);
   std::erase_if(outline.foreign_elements,

@@ -211,6 +211,7 @@ std::string text_of(const Plan& plan, const Paths& paths) {
       {"box", to_text(json_of(plan.box))},
       {"las_steps", to_text(Json(plan.las_steps))},
       {"forms", to_text(Json(plan.forms))},
+      {"timed", to_text(Json(plan.timed))},
       {"scanners", to_text(json_of(plan.scanners))},
       {"model", to_text(json_of(plan.model, paths))},
       {"scales", to_text(Json{{"s_min", plan.s_min}, {"s_max", plan.s_max}})},
@@ -243,6 +244,7 @@ Plan plan_of(const Json& j, const Paths& paths, std::string& member) {
   plan.box = box_in(at("box"));
   plan.las_steps = at("las_steps").get<std::vector<double>>();
   plan.forms = at("forms").get<std::vector<std::size_t>>();
+  plan.timed = at("timed");
   plan.scanners = places_in(at("scanners"));
   plan.model = model_of(at("model"), paths);
   plan.s_min = at("scales").at("s_min");
@@ -307,6 +309,7 @@ std::string unsound_member(const Plan& plan) {
   const bool are_inputs =
       std::ranges::all_of(plan.forms, [&](std::size_t form) { return form < plan.inputs.size(); });
   if (plan.forms.empty() || !are_inputs) return "forms";
+  if (std::ranges::count(plan.forms, plan.timed) == 0) return "timed";
   if (plan.tiles.empty()) return "tiles";
   return "";
 }

@@ -61,6 +61,7 @@ struct Plan {
   /// The inputs, by number, that together have the columns and the header of the tiles: the first,
   /// and of LAS those with more.
   std::vector<std::size_t> forms = {0};
+  std::size_t timed = 0;  ///< the form whose GPS times count as those of the tiles
   /// Scale and offset of x, y and z in the tiles, where all inputs are LAS or LAZ; otherwise empty.
   std::vector<double> las_steps = {};
   BoundingBox box = {};  ///< of all points with a place

@@ -205,7 +205,7 @@ void sort_inputs(const SortRequest& request, Plan& plan, const Progress* progres
   }
   copies.keep();
   plan.inputs = std::move(sorted);
-  plan.forms = {0};
+  plan.forms = {0}, plan.timed = 0;
 }
 
 }  // namespace pcednet::tiles

@@ -26,7 +26,7 @@ TEST_F(LasMerge, TakesTheFirstFormatThatHasTheFieldsOfAll) {
                                   {6, 1, 6}, {3, 6, 7}, {6, 7, 7}, {2, 8, 8}, {8, 7, 8}, {9, 9, 9}};
   for (const auto& [a, b, both] : expected) {
     const std::vector<LasFile> files = {file({.format = a}), file({.format = b})};
-    const LasFile merged = merge_las_files(files);
+    const LasFile merged = merge_las_files(files, 0);
     EXPECT_EQ(merged.point_format(), both) << a << ", " << b;
     EXPECT_EQ(merged.record_length(), las_test_stride(both));
     EXPECT_EQ(merged.minor_version(), both < 6 ? 2u : 4u);
@@ -40,11 +40,11 @@ TEST_F(LasMerge, TakesTheExtraBytesOfAll) {
   const std::vector<LasFile> files = {file({.extra = 6, .records = {{"LASF_Spec", 4, a + b}}}),
                                       file({.format = 7}),
                                       file({.extra = 12, .records = {{"LASF_Spec", 4, b + c}}})};
-  const LasFile merged = merge_las_files(files);
+  const LasFile merged = merge_las_files(files, 0);
   EXPECT_EQ(merged.record_length(), las_test_stride(7, 14));
   ASSERT_EQ(merged.records.size(), 1u);
   EXPECT_EQ(merged.records[0].data, a + b + c);
-  EXPECT_EQ(merge_las_files(std::vector{files[1], files[0]}).records.at(0).data, a + b);
+  EXPECT_EQ(merge_las_files(std::vector{files[1], files[0]}, 0).records.at(0).data, a + b);
 }
 
 TEST_F(LasMerge, TakesTheSystemOfTheFirstThatNamesMost) {
@@ -53,29 +53,31 @@ TEST_F(LasMerge, TakesTheSystemOfTheFirstThatNamesMost) {
   const LasFile none = file({.records = {{"survey", 1, "kept"}}});
   const LasFile flat = file({.records = {{"LASF_Projection", 2112, plane}}});
   const LasFile full = file({.extended = {{"LASF_Projection", 2112, both}}});
-  const LasFile merged = merge_las_files(std::vector{none, flat, full});
+  const LasFile merged = merge_las_files(std::vector{none, flat, full}, 0);
   ASSERT_EQ(merged.records.size(), 2u);
   EXPECT_EQ(merged.records[0].data, "kept");
   EXPECT_EQ(merged.records[1].data, both);
   EXPECT_TRUE(merged.extended_records.empty());
-  EXPECT_EQ(merge_las_files(std::vector{none, flat}).records.at(1).data, plane);
-  EXPECT_EQ(merge_las_files(std::vector{flat, none}).records.at(0).data, plane);
+  EXPECT_EQ(merge_las_files(std::vector{none, flat}, 0).records.at(1).data, plane);
+  EXPECT_EQ(merge_las_files(std::vector{flat, none}, 0).records.at(0).data, plane);
 }
 
-TEST_F(LasMerge, CountsTimesAsTheFirstThatHasThem) {
+TEST_F(LasMerge, CountsTimesAsTheChosenFile) {
   const auto with = [&](unsigned format, unsigned encoding) {
     LasFile its = file({.format = format});
     put_number(its.header, las_header::kGlobalEncoding, static_cast<std::uint16_t>(encoding));
     return its;
   };
-  const auto is_adjusted = [&](const LasFile& a, const LasFile& b) {
-    const std::string header = merge_las_files(std::vector{a, b}).header;
-    return (number_at<std::uint16_t>(header, las_header::kGlobalEncoding) & 1) == 1;
-  };
-  EXPECT_TRUE(is_adjusted(with(1, 1), with(6, 16)));
-  EXPECT_FALSE(is_adjusted(with(1, 0), with(6, 17)));
-  EXPECT_TRUE(is_adjusted(with(0, 0), with(6, 17)));
-  EXPECT_FALSE(is_adjusted(with(2, 1), with(1, 0)));
+  for (const unsigned first : {1u, 6u}) {
+    for (const unsigned adjusted : {0u, 1u}) {
+      const std::vector<LasFile> files = {with(first, adjusted), with(6, 17 - adjusted)};
+      for (const std::size_t timed : {0u, 1u}) {
+        const std::string header = merge_las_files(files, timed).header;
+        const auto encoding = number_at<std::uint16_t>(header, las_header::kGlobalEncoding);
+        EXPECT_EQ(encoding & 1, timed == 0 ? adjusted : 1 - adjusted);
+      }
+    }
+  }
 }
 
 }  // namespace

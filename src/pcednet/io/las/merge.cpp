@@ -107,12 +107,10 @@ void take_system(std::span<const LasFile> files, LasFile& merged) {
 
 }  // namespace
 
-LasFile merge_las_files(std::span<const LasFile> files) {
+LasFile merge_las_files(std::span<const LasFile> files, std::size_t timed) {
   LasFile merged = files.front();
   take_system(files, merged);
-  const auto timed =
-      std::ranges::find_if(files, [](const LasFile& file) { return holds_field(file, "GpsTime"); });
-  if (timed != files.end()) set_encoding(merged, encoding_of(*timed), las_header::kStandardTimeBit);
+  set_encoding(merged, encoding_of(files[timed]), las_header::kStandardTimeBit);
   const unsigned format = common_format(files);
   const ExtraBytes extra = extra_bytes_of(files);
   if (format >= 6 && merged.point_format() < 6) {
