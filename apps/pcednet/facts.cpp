@@ -251,7 +251,8 @@ void add(const io::LasFacts& las, Lines& lines) {
                         las.copc         ? ", COPC"
                         : las.compressed ? ", LASzip"
                                          : ""));
-  lines.add("made by", fmt::format("{} / {}, day {} of {}", las.system, las.software,
+  const char* const between = las.system.empty() || las.software.empty() ? "" : " / ";
+  lines.add("made by", fmt::format("{}{}{}, day {} of {}", las.system, between, las.software,
                                    las.created_day, las.created_year));
   lines.add("scale", spelled_list(las.scale));
   lines.add("offset", spelled_list(las.offset));
@@ -259,8 +260,9 @@ void add(const io::LasFacts& las, Lines& lines) {
   add_known("coordinates", is_known ? las.code : "of no coordinate system that the file names");
   add_known("coordinates", las.coordinate_system);
   for (const io::LasFacts::Record& record : las.records) {
-    lines.add("record", fmt::format("{} {}, {} bytes, {}", record.user_id, record.record_id,
-                                    record.bytes, record.description));
+    lines.add("record",
+              fmt::format("{} {}, {} bytes{}{}", record.user_id, record.record_id, record.bytes,
+                          record.description.empty() ? "" : ", ", record.description));
   }
   add_known("by return", text_of(las.points_by_return, [](int) { return std::string_view(); }));
   add_known("by class", text_of(las.points_by_class, [&](int code) {

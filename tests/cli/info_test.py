@@ -75,6 +75,17 @@ class Info(CliTest):
             path.write_bytes(las(number, rows))
             self.assertIn("by class       " + said, run("info", path).stdout)
 
+    def test_texts_that_las_leaves_empty_are_left_out(self):
+        path = self.folder / "a.las"
+        whole = las(6, random_rows(FORMATS[6], 6), [vlr(b"survey", 1, b"1234"), vlr(b"survey", 2, b"12", b"two")])
+        path.write_bytes(whole)
+        said = run("info", path).stdout
+        self.assertIn("made by        a scanner / a program, day 100 of 2020\n", said)
+        self.assertIn("record         survey 1, 4 bytes\n", said)
+        self.assertIn("record         survey 2, 2 bytes, two\n", said)
+        path.write_bytes(whole.replace(b"a scanner", bytes(9)))
+        self.assertIn("made by        a program, day 100 of 2020\n", run("info", path).stdout)
+
     def test_outliers_are_counted(self):
         """As by brute force: fewer than three others within ten spacings; cells hold many points or few."""
         p, n, _ = cube(1500)
