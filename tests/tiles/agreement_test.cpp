@@ -74,6 +74,19 @@ TEST_F(Agreement, TakesTheColumnsOfAll) {
             "none: Blue, Green, Red");
 }
 
+TEST_F(Agreement, CountsNumbersOfScansForColumnsOfAll) {
+  LasTestFile scans{.rows = io::las_test_rows(6, 100, 4), .extra = 4};
+  scans.records = {{"LASF_Spec", 4, io::las_test_extra("scan", 6)},
+                   {"pcednet", 1, "scanner 0: 1 2 3\nscanner 1: 4 5 6\n"}};
+  std::vector<IndexedInput> inputs = {indexed("a.las", some_points()), indexed("b.las", scans)};
+  choose_scanners(inputs, {}, plan_);
+  ASSERT_EQ(plan_.scanners.size(), 3u);
+  plan_.notes.clear();
+  check_agreement(inputs, plan_);
+  EXPECT_TRUE(plan_.notes.empty());
+  EXPECT_EQ(plan_.forms, (std::vector<std::size_t>{0}));
+}
+
 TEST_F(Agreement, NamesTheColumnsThatCannotBeZero) {
   LasTestFile a{.rows = io::las_test_rows(6, 100, 1), .extra = 1};
   LasTestFile b = a;
@@ -205,10 +218,11 @@ TEST_F(Agreement, LeavesOutTimesThatCountFromElsewhere) {
   EXPECT_FALSE(agree(6, 5, 81, 81, 1200));
   EXPECT_FALSE(agree(6, 5, 81, 17));
   ASSERT_EQ(plan_.notes.size(), 1u);
-  EXPECT_EQ(plan_.notes[0],
-            fmt::format("{0}/b.las: GpsTime counts from elsewhere (global encoding) than in "
-                        "{0}/a.las: 0 in the tiles",
-                        folder_.string()));
+  EXPECT_EQ(
+      plan_.notes[0],
+      fmt::format("{0}/b.las: GpsTime has another base (seconds of the week, or adjusted) than in "
+                  "{0}/a.las: 0 in the tiles",
+                  folder_.string()));
   // Times of 0 are none.
   LasTestFile timed = some_points(6), untimed = timed;
   for (std::size_t at = 22; at < untimed.rows.size(); at += io::las_test_stride(6)) {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <fstream>
+
 #include "io/las/las_writer.h"
 #include "pcednet/io/las/file.h"
 #include "pcednet/io/las/las.h"
@@ -22,6 +25,13 @@ class Forms : public testing::Test, protected test::OwnFolder {
   }
 
   PointCloud outline(unsigned format) const { return points(format, 0); }
+
+  PointCloud outline_with_scans() const {
+    const auto path = folder_ / "scans.las";
+    std::ofstream(path, std::ios::binary) << io::las_bytes(
+        {.extra = 4, .records = {{"LASF_Spec", 4, io::las_test_extra("scan", 6)}}});
+    return io::read_las(io::InputFile(path)).cloud;
+  }
 };
 
 const Attribute& column(const PointCloud& cloud, const char* name) {
@@ -45,6 +55,16 @@ TEST_F(Forms, GiveAPartTheColumnsOfAll) {
   for (std::size_t i = 0; i < 300; ++i) {
     const double degrees = column(before, "ScanAngleRank").value(i);
     EXPECT_NEAR(0.006 * column(part, "ScanAngle").value(i), degrees, 0.003001);
+  }
+}
+
+TEST_F(Forms, HaveOneColumnOfScans) {
+  PointCloud first = outline(1);
+  first.attributes.push_back(make_attribute("scan", std::vector<std::int32_t>{}));
+  for (const PointCloud& other : {outline_with_scans(), outline(6)}) {
+    const PointCloud all = merge_outlines({first, other}, 0);
+    EXPECT_EQ(all.attributes.back().name, "scan");
+    EXPECT_EQ(std::ranges::count(all.attributes, "scan", &Attribute::name), 1);
   }
 }
 

@@ -146,6 +146,7 @@ void check_las(std::vector<IndexedInput>& inputs, std::size_t i, Said& said) {
 void count_columns(const std::vector<IndexedInput>& inputs, std::size_t i, Said& said) {
   bool is_form = i == 0;
   for (const Attribute& column : inputs[i].outline.attributes) {
+    if (column.name == "scan" && inputs[i].input.scans > 0) continue;  // all have numbers
     is_form = ++said.columns[column.name] == 1 || is_form;
   }
   if (is_form) said.forms.push_back(i);
@@ -180,7 +181,7 @@ void note_left_out(const std::vector<IndexedInput>& inputs, const Said& said, Pl
     const IndexedInput& first =
         is_time ? inputs[said.timed.value_or(0)] : *said.meanings.at(column).first;
     plan.notes.push_back(fmt::format("{}: {} {} than in {}: 0 in the tiles", some_of(its), column,
-                                     is_time ? "counts from elsewhere (global encoding)"
+                                     is_time ? "has another base (seconds of the week, or adjusted)"
                                              : "has another type, scale, offset or no-data value",
                                      first.input.path.string()));
   }

@@ -55,7 +55,10 @@ PointCloud merge_outlines(std::vector<PointCloud> outlines, std::size_t timed) {
   PointCloud outline = std::move(outlines.front());
   const Attribute* scan = find_attribute(outline, "scan");  // of the plan, not of the file
   std::vector<Attribute> columns = io::LasRecordSink(merged, 0, known).finish().attributes;
-  if (scan) columns.push_back(*scan);
+  if (scan) {
+    std::erase_if(columns, [](const Attribute& column) { return column.name == "scan"; });
+    columns.push_back(*scan);
+  }
   outline.attributes = std::move(columns);
   std::erase_if(outline.foreign_elements, io::is_las_element);
   io::attach_las_file(outline, merged);
