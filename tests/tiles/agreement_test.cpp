@@ -100,7 +100,12 @@ TEST_F(Agreement, NamesTheColumnsThatCannotBeZero) {
 TEST_F(Agreement, NeedsDescriptionsOfExtraBytesThatDiffer) {
   LasTestFile a{.rows = io::las_test_rows(6, 100, 1), .extra = 1};
   EXPECT_EQ(refused(a, a), "");
-  EXPECT_TRUE(refused(some_points(), a).starts_with("have different columns, and "));
+  const std::string difference = "have different columns or headers, and ";
+  EXPECT_TRUE(refused(some_points(), a).starts_with(difference));
+  LasTestFile named = a;
+  named.records = {{"LASF_Projection", 2112, kUtm}};
+  EXPECT_EQ(refused(named, a), "");
+  EXPECT_TRUE(refused(a, named).starts_with(difference));
 }
 
 TEST_F(Agreement, LeavesOutExtraBytesOfAnotherMeaning) {

@@ -205,19 +205,19 @@ void note_systems(const std::vector<IndexedInput>& inputs, const Said& said, Pla
 
 /// Chooses the forms of the plan.
 void choose_forms(const std::vector<IndexedInput>& inputs, Said said, Plan& plan) {
+  plan.timed = said.timed.value_or(0);
+  for (const std::size_t input : {said.system, plan.timed}) {
+    if (std::ranges::count(said.forms, input) == 0) said.forms.push_back(input);
+  }
   if (said.forms.size() > 1 && said.bytes) {
     refuse_pair(inputs[said.forms[0]], inputs[said.forms[1]],
-                fmt::format("have different columns, and {} has extra bytes that it does not "
-                            "describe",
+                fmt::format("have different columns or headers, and {} has extra bytes that it "
+                            "does not describe",
                             said.bytes->input.path.string()));
   }
   note_columns(inputs, said, plan);
   note_left_out(inputs, said, plan);
   note_systems(inputs, said, plan);
-  plan.timed = said.timed.value_or(0);
-  for (const std::size_t input : {said.system, plan.timed}) {
-    if (std::ranges::count(said.forms, input) == 0) said.forms.push_back(input);
-  }
   plan.forms = std::move(said.forms);
 }
 
