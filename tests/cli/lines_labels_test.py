@@ -80,6 +80,23 @@ class LinesLabels(LinesTest):
             self.assertEqual("its labels are used" in done.stderr, column == "is_edge")
             self.assertEqual(self.stated_count(done), 12)
 
+    def test_labels_of_las_count_in_any_type(self):
+        """Extra bytes of a label are float where CloudCompare writes them. %6C keeps the reader of PLY from the column."""
+        p, n, label = cube(8000)
+        plain, las_file = self.folder / "plain.ply", self.folder / "a.las"
+        for numbers, expect in ((label, 0), (2 * label, 4)):
+            write_ply(plain, p, n, **{"%6Cabel": numbers})
+            run("convert", plain, "-o", las_file, "--overwrite")
+            self.assertRegex(run("info", las_file).stdout, "float32 label, 0 to ")
+            done = run("train", las_file, "-o", self.folder / "m.safetensors", "--epochs", 1,
+                       "--overwrite", expect=expect)
+            self.assertIn(f"{las_file}: " + ("labels from its column label\n" if expect == 0 else
+                                            "has no labels, as its column label holds 4, which is none\n"), done.stderr)
+        write_ply(plain, p, n, **{"%6Cabel": label})
+        done = run("lines", plain, *self.outputs("obj"))
+        self.assertIn("labels from its column label\n", done.stderr)
+        self.assertEqual(self.stated_count(done), 12)
+
     def test_labels_that_are_probabilities_are_told(self):
         p, _, label = cube(3000)
         path = self.folder / "p.csv"

@@ -53,6 +53,10 @@ TEST(Labels, AreFoundInTheColumnsOfOtherPrograms) {
     EXPECT_FALSE(column(name, {0, 1, 0.5F, 0})) << "a probability";
     EXPECT_FALSE(column(name, {0, 1, 2, 4})) << "a number of an edge";
   }
+  for (const char* name : {"label", "scalar_Label"}) {
+    EXPECT_EQ(column(name, {0, 1, 1, -1})->classes, (Labels{0, 1, 1, 255})) << name;
+    EXPECT_FALSE(column(name, {0, 1, 2, 4})) << name;
+  }
   EXPECT_FALSE(column("EdgeOfFlightLine", {0, 1, 0, 1}));
   EXPECT_FALSE(column("classification", {0, 1, 2, 3}));
   EXPECT_EQ(formats::doubtful_column_of(cloud), "classification");

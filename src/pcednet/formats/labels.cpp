@@ -101,12 +101,13 @@ const Attribute* column_of_classes(const PointCloud& cloud, const std::string& n
 }  // namespace
 
 std::optional<ColumnLabels> edge_column_of(const PointCloud& cloud) {
-  for (const char* name : {"is_edge", "edge", "edge_label"}) {
+  for (const std::string name : {"label", "is_edge", "edge", "edge_label"}) {
     const Attribute* attribute = column_of_classes(cloud, name);
     if (!attribute) continue;
     ColumnLabels found = {.classes = *io::to_labels(*attribute, cloud.size()),
                           .column = attribute->name};
     const bool yes_or_no =
+        name != "label" &&
         std::all_of(found.classes.begin(), found.classes.end(),
                     [](std::uint8_t label) { return label <= 1 || label == kUnlabelled; });
     if (yes_or_no) {

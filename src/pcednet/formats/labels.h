@@ -28,15 +28,16 @@ std::vector<std::uint8_t> read_labels(const std::filesystem::path& path);
 /// Error(kInsufficient), naming `path`, if that attribute holds numbers outside 0 ... 255.
 std::vector<std::uint8_t> labels_of(const PointCloud& cloud, const std::filesystem::path& path);
 
-/// Classes in a column that has one of the names that other programs give to edges.
+/// Classes in a column that is not the labels of its format, as in LAS a label of another type than
+/// a byte, or that has one of the names that other programs give to edges.
 struct ColumnLabels {
   std::vector<std::uint8_t> classes;
   std::string column;
 };
 
-/// The first of is_edge, edge and edge_label in `cloud`, in any case, also after `scalar_`: 1 is
-/// kSharpEdge if there are 0 and 1 alone, otherwise numbers are EdgeClass. -1, 255 and NaN are
-/// unlabelled. None with other numbers, such as probabilities.
+/// The first of label, is_edge, edge and edge_label in `cloud`, in any case, also after `scalar_`.
+/// Numbers are EdgeClass, but 1 is kSharpEdge if there are 0 and 1 alone in any but the first. -1,
+/// 255 and NaN are unlabelled. None with other numbers, such as probabilities.
 std::optional<ColumnLabels> edge_column_of(const PointCloud& cloud);
 
 /// The name of a column whose numbers could be EdgeClass but need not: class or classification, in

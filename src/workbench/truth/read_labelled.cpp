@@ -29,10 +29,12 @@ void take_truth_of_result(io::LoadedCloud& loaded) {
   loaded.warnings.push_back(std::move(truth->note));
 }
 
-/// The first value that is no label; none if all are.
-std::optional<double> find_no_label(const Attribute& attribute, std::size_t points) {
+/// The first value that is no label up to `most`, nor 255; none if all are.
+std::optional<double> find_no_label(const Attribute& attribute, std::size_t points,
+                                    std::uint8_t most) {
   for (std::size_t i = 0; i < points; ++i) {
-    if (!io::to_label(attribute.value(i))) return attribute.value(i);
+    const auto label = io::to_label(attribute.value(i));
+    if (!label || (*label > most && *label != kUnlabelled)) return attribute.value(i);
   }
   return std::nullopt;
 }
@@ -71,8 +73,9 @@ std::string why_unlabelled(const PointCloud& cloud) {
   for (const Attribute& attribute : cloud.attributes) {
     const std::string name = io::lower_case(attribute.name);
     if (attribute.components != 1 || !sounds_like_labels(name)) continue;
-    const auto other = find_no_label(attribute, cloud.size());
-    if (other && std::ranges::count(io::label_names(), name) > 0) {
+    const bool is_named = std::ranges::count(io::label_names(), name) > 0;
+    const auto other = find_no_label(attribute, cloud.size(), is_named ? kBoundary : kUnlabelled);
+    if (other && is_named) {
       return fmt::format("its column {} holds {}, which is none", attribute.name, *other);
     }
     if (!other && maybe.empty()) maybe = fmt::format("; {} may have to be renamed", attribute.name);
