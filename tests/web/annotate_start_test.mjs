@@ -252,6 +252,9 @@ test("asks before it is left while strokes are on their way to a slow program", 
 
 test("loses no stroke and goes on by itself when the program is killed and started again", async () => {
   await settled();
+  const second = await its.browser.newPage();
+  await second.goto(its.server.address);
+  await second.getByText("this one is read-only").waitFor();
   const kept = await finallyPainted();
   const eye = () => page.evaluate(() => [...annotator.stage.camera.view.matrix]);
   const middle = await aim();
@@ -277,7 +280,10 @@ test("loses no stroke and goes on by itself when the program is killed and start
   let asked = 0; // the first answer gets lost, and the program is ready before the second arrives
   const session = (url) => url.pathname === "/api/session";
   await page.route(session, async (route) => {
-    if (++asked === 1) return route.abort();
+    if (++asked === 1) {
+      await second.waitForFunction(() => annotator.store.now.connected && annotator.store.now.writer);
+      return route.abort();
+    }
     const response = await route.fetch();
     if (asked === 2) await page.evaluate(() => annotator.client.events.dispatchEvent(new MessageEvent("ready")));
     await page.waitForTimeout(500);
@@ -293,6 +299,8 @@ test("loses no stroke and goes on by itself when the program is killed and start
   assert.deepEqual(await eye(), view, "the view is as it was");
   await expectPainted(drawn);
   assert.ok(await page.evaluate(() => annotator.store.now.writer));
+  await second.getByText("this one is read-only").waitFor();
+  await second.close();
   await page.waitForFunction(() => annotator.store.now.runs.some((r) => r.current && r.run > 1));
   await page.keyboard.press("Control+z");
   await page.waitForFunction(() => annotator.store.now.undo === 4);

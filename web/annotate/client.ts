@@ -124,6 +124,13 @@ export class Client {
     const { window: name, writer } = await this.api.post<{ window: string; writer: boolean }>("/api/window");
     this.api.window = name;
     this.store.set({ writer });
+    // A window that only looked on may be back earlier: the strokes that wait here are not lost to it.
+    if (!writer && this.isBusy) await this.paintHere();
+  }
+
+  private async paintHere(): Promise<void> {
+    await this.api.post(`/api/window/${this.api.window}/take`);
+    this.store.set({ writer: true });
   }
 
   /** The program answers again, or another start of it does. */
@@ -430,7 +437,7 @@ export class Client {
   }
 
   takeOver(): void {
-    this.attempt(this.api.post(`/api/window/${this.api.window}/take`).then(() => this.store.set({ writer: true })));
+    this.attempt(this.paintHere());
   }
 
   /** The next place where the network is unsure, or the one before, round and round. One step after another: two at a
