@@ -382,6 +382,12 @@ class Train(CliTest):
         self.assertIn("validation loss -  accuracy -\n", said)
         self.assertIn("nothing was held out for validation", said)
         self.assertIn("--start general learns more from few points", said)
+        self.assertIn("those of --start general or with --s-max-ratio 8 follow the spacing", said)
+        own = write_own(self.folder / "own.ply", p, n, few)
+        said = run("train", own, "-o", model, "--epochs", 1, "--overwrite").stderr
+        self.assertIn("nothing was held out for validation", said)
+        self.assertIn("those with --s-max-ratio 8 follow the spacing", said)
+        self.assertNotIn("general", said)
         self.assertNotIn("validation_loss", tensors(model)[0])
         said = tensors(self.train("all.safetensors", "--epochs", 1))[0]
         self.assertIn("validation_loss", said)

@@ -209,8 +209,8 @@ void check_extension(const std::filesystem::path& output) {
                           output.string()));
 }
 
-/// What is worth knowing of a training that is over.
-void tell(const detect::TrainedModel& trained) {
+/// What is worth knowing of a training that is over. `could_start`: also from general.
+void tell(const detect::TrainedModel& trained, bool could_start) {
   for (const std::string& note : trained.notes) warn(note);
   if (!trained.no_context.empty()) {
     warn(fmt::format("no context network was trained: the first network left no point in doubt: {}",
@@ -219,15 +219,19 @@ void tell(const detect::TrainedModel& trained) {
   if (trained.adapted) {
     say("  adapted to the painted points: nothing is held out for validation");
   } else if (!trained.validated) {
-    say("  nothing was held out for validation, as a class has fewer than 20 points: the last "
-        "epoch was kept. --start general learns more from few points");
+    say(
+        fmt::format("  nothing was held out for validation, as a class has fewer than 20 points: "
+                    "the last epoch was kept{}",
+                    could_start ? ". --start general learns more from few points" : ""));
   }
 }
 
-void tell_scales(const gls::ScaleRange& range) {
+void tell_scales(const gls::ScaleRange& range, bool could_start) {
   if (range.s_max > 0 || range.s_max_ratio > 0) return;
-  say("  its scales grow with the diagonal of a cloud; those of --start general, or with "
-      "--s-max-ratio 8, follow the spacing of the points, in pieces and larger clouds as well");
+  say(
+      fmt::format("  its scales grow with the diagonal of a cloud; those {}with --s-max-ratio 8 "
+                  "follow the spacing of the points, in pieces and larger clouds as well",
+                  could_start ? "of --start general or " : ""));
 }
 
 void train(const TrainArguments& arguments, const Common& common) {
@@ -253,9 +257,10 @@ void train(const TrainArguments& arguments, const Common& common) {
   }
   if (experts.pieces) detect::join_pieces(trained.model, *experts.pieces);
   detect::save_model(arguments.output, trained.model, common.overwrite());
-  tell(trained);
+  const bool could_start = arguments.project.empty() && has_edges(trained.model.table);
+  tell(trained, could_start);
   if (arguments.project.empty() && arguments.start.empty()) {
-    tell_scales(arguments.options.descriptor.range);
+    tell_scales(arguments.options.descriptor.range, could_start);
   }
   const auto& context = trained.model.context;
   say(fmt::format("{} weights{}; seconds: {}\n  -> {}",
