@@ -15,7 +15,7 @@ from .errors import PcednetWarning as PcednetWarning
 from .errors import UnreadableError as UnreadableError
 from .errors import UsageError as UsageError
 
-_Path = str | os.PathLike[str]
+_Path = str | bytes | os.PathLike[str] | os.PathLike[bytes]
 _Points = ArrayLike | "Cloud"
 _Labels = ArrayLike | Mapping[Any, ArrayLike]
 _Set = Literal["default", "cad", "worn", "scan", "varied", "sparse", "drawn", "pieces",

@@ -25,7 +25,7 @@ class Cloud:
         0 non-edge, 1 smooth-edge, 2 sharp-edge, 3 boundary, 255 unlabelled; or numbers of
         ``class_names``.
     attributes : dict of str to array_like, (n,) or (n, k), optional
-        Other numbers of the points, by name.
+        Other numbers of the points, by name. Files get integers of 64 bits in 32 if they fit, unless they were read so.
     name : str, optional
 
     Attributes
@@ -45,6 +45,7 @@ class Cloud:
         xyz = _arrays.numbers(xyz, "xyz")
         self._is_float32 = _arrays.is_float32(xyz)
         self._kept, self._kept_rows = None, 0
+        self._wide = frozenset()  # names of the attributes that have integers of 64 bits in the file
         self._estimates = None  # digest of positions and normals, if a file says that they are estimates
         self._predictions = None  # digest of the labels of a file that says that it is a result, or _CHANGED
         self.xyz = _arrays.vectors(xyz, "xyz")
@@ -64,6 +65,7 @@ class Cloud:
         cloud.comments, cloud.scanners = parts["comments"], parts["scanners"]
         cloud._is_float32 = parts["is_float32"]
         cloud._kept, cloud._kept_rows = parts["kept"], len(cloud)
+        cloud._wide = frozenset(name for name, values in cloud.attributes.items() if _is_wide(values))
         if _core.ESTIMATED_NORMALS in cloud.comments:
             cloud._estimates = _digest(cloud.xyz, cloud.normals)
         if cloud._truth_of_result() is not None:
@@ -206,7 +208,7 @@ class Cloud:
         """
         chosen = _arrays.indices(points, len(self), "points")
         part = Cloud(self.xyz[chosen], name=self.name)
-        part._is_float32 = self._is_float32
+        part._is_float32, part._wide = self._is_float32, self._wide
         for name in ("normals", "colours", "labels"):
             values = getattr(self, name)
             setattr(part, name, None if values is None else np.asarray(values)[chosen])
@@ -252,7 +254,7 @@ def points_of(xyz, normals=None, viewpoint=None, estimates=True, tells_of_faces=
 
 
 def existing(path):
-    path = os.fspath(path)
+    path = os.fsdecode(path)
     if not os.path.exists(path):
         raise MissingFileError(f"{path}: no such file")
     return path
@@ -303,6 +305,19 @@ def _attribute(name, values, rows):
     return np.require(array, wanted, ["C", "A"])
 
 
+def _is_wide(array):
+    return array.dtype.kind in "iu" and array.dtype.itemsize == 8
+
+
+def _narrowed(array):
+    """Integers of 64 bits, which numpy makes by itself, in 32 if they fit: PLY has none of 64, but two columns."""
+    if not _is_wide(array):
+        return array
+    narrow = np.int32 if array.dtype.kind == "i" else np.uint32
+    fits = array.size == 0 or (np.iinfo(narrow).min <= array.min() and array.max() <= np.iinfo(narrow).max)
+    return array.astype(narrow) if fits else array
+
+
 def _parts_of(cloud):
     rows = len(cloud)
     colours = cloud.colours
@@ -313,6 +328,7 @@ def _parts_of(cloud):
                              f"of {colours.shape}")
         colours = np.require(colours, requirements=["C", "A"])
     attributes = {str(name): _attribute(name, values, rows) for name, values in cloud.attributes.items()}
+    attributes = {name: values if name in cloud._wide else _narrowed(values) for name, values in attributes.items()}
     corrected = cloud._corrected()
     if corrected is not None:  # as labels alone, a reader of the file would take them for predictions
         attributes[_PAINTED] = corrected
@@ -379,7 +395,7 @@ def write(path, xyz, result=None, *, normals=None, colours=None, labels=None, at
     if result is not None:
         _arrays.check_result(result, len(cloud))
         parts = result._parts()
-    path, written = os.fspath(path), _parts_of(cloud)
+    path, written = os.fsdecode(path), _parts_of(cloud)
     losses = _core.write(path, written, parts, bool(class_colours), bool(ascii), bool(overwrite))
     _arrays.warn(f"{path} does not keep: {loss}" for loss in losses)
     painted = np.asarray(cloud.attributes.get(_PAINTED, ()))

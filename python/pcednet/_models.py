@@ -72,13 +72,13 @@ class Model:
         ModelError
             The file is damaged, or not an edge model.
         """
-        shipped = _SHIPPED / f"{os.fspath(name)}.safetensors"
+        shipped = _SHIPPED / f"{os.fsdecode(name)}.safetensors"
         if not os.path.isfile(name) and shipped.exists():
             return cls(_core.EdgeModel(shipped))
         try:
             return cls(_core.EdgeModel(_clouds.existing(name)))
         except FileNotFoundError as error:
-            raise type(error)(f"{os.fspath(name)}: neither a file nor a shipped model "
+            raise type(error)(f"{os.fsdecode(name)}: neither a file nor a shipped model "
                               f"({', '.join(shipped_models())})") from None
 
     def save(self, path, *, overwrite=False):
@@ -102,7 +102,7 @@ class Model:
         UsageError
             Another extension. ONNX: of a CNN, or of a model trained with another symmetry than its average.
         """
-        path = os.fspath(path)
+        path = os.fsdecode(path)
         extension = os.path.splitext(path)[1].lower()
         if extension == ".safetensors":
             self._core.save(path, overwrite)

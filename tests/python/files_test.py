@@ -99,6 +99,36 @@ class Files(CliTest):
             np.testing.assert_array_equal(back["a_flag"], fields["a_byte"] > 99)
             np.testing.assert_array_equal(back["strided"], fields["a_double"][::-1])
 
+    def test_whole_numbers_are_one_column_that_other_programs_read(self):
+        """Numpy makes them of 64 bits, of which PLY would have two columns."""
+        positions, _, labels = cube(300)
+        ids, large = np.arange(300) - 7, np.arange(300) + 2**40
+        pcednet.write(self.path("a.ply"), positions, attributes={
+            "cluster": ids, "count": np.arange(300, dtype=np.uint64) + 2**31, "time": large, "label": labels.astype(int)})
+        header = self.path("a.ply").read_bytes()[:500]
+        for column in (b"int cluster", b"uint count", b"uint time_low32", b"int time_high32", b"int label"):
+            self.assertIn(b"property " + column + b"\n", header)
+        cloud = pcednet.read(self.path("a.ply"))
+        np.testing.assert_array_equal(cloud["cluster"], ids)
+        np.testing.assert_array_equal(cloud["time"], large)
+        np.testing.assert_array_equal(cloud.labels, labels)
+        # What a file has in 64 bits stays so, as in the program.
+        pcednet.write(self.path("b.ply"), cloud.select(large < 2**40 + 9))
+        cloud["time"] -= 2**40
+        pcednet.write(self.path("c.ply"), pickle.loads(pickle.dumps(cloud)))
+        for name in ("b.ply", "c.ply"):
+            self.assertIn(b"property uint time_low32\n", self.path(name).read_bytes()[:500])
+
+    def test_paths_may_be_bytes(self):
+        positions = cube(300)[0]
+        cloud, model = (str(self.path(name)).encode() for name in ("a.ply", "m.safetensors"))
+        pcednet.write(cloud, positions)
+        self.assertEqual(pcednet.read(cloud).name, "a")
+        pcednet.Model.load(b"cad").save(model)
+        self.assertEqual(pcednet.Model.load(model).name, pcednet.Model.load("cad").name)
+        with self.assertRaisesRegex(pcednet.MissingFileError, "^none: neither a file"):
+            pcednet.Model.load(b"none")
+
     def test_a_cloud_may_be_changed_and_cut(self):
         positions, normals, labels = cube(500)
         write_ply(self.path("in.ply"), positions, normals, labels)
