@@ -47,6 +47,13 @@ class AnnotateClouds(AnnotateTest):
         return np.frombuffer(
             server.request(f"/api/values?of={of}&nodes={names}&cloud={cloud}")[2], np.uint8)
 
+    def test_tells_files_of_one_name_by_their_folders(self):
+        same = self.other.with_name(self.cloud.name)
+        shutil.copy(self.other, same)
+        self.other = same
+        session = self.quiet_both().get("/api/session")
+        self.assertEqual([c["file"] for c in session["clouds"]], [f"{self.folder.name}/cube.ply", "more/cube.ply"])
+
     def test_shows_paints_and_takes_back_in_each(self):
         server = self.quiet_both()
         sessions = [server.get(f"/api/session?cloud={k}") for k in (0, 1)]

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <span>
 
 #include "pcednet/core/error.h"
 #include "pcednet/lines/find_lines.h"
@@ -12,6 +15,31 @@
 namespace pcednet::annotate {
 
 using Lock = std::unique_lock<std::mutex>;
+
+namespace {
+
+/// The last parts of a path.
+std::filesystem::path end_of(const std::filesystem::path& path, std::ptrdiff_t parts) {
+  std::filesystem::path end;
+  for (auto part = std::prev(path.end(), parts); part != path.end(); ++part) end /= *part;
+  return end;
+}
+
+/// The name of an input's file, after as many folders as tell it from the other inputs.
+std::string name_apart(std::span<const std::filesystem::path> inputs, std::size_t which) {
+  const auto& input = inputs[which];
+  const auto all = std::distance(input.begin(), input.end());
+  for (std::ptrdiff_t parts = 1; parts < all; ++parts) {
+    const auto is_alike = [&](const std::filesystem::path& other) {
+      return &other != &input && std::distance(other.begin(), other.end()) >= parts &&
+             end_of(other, parts) == end_of(input, parts);
+    };
+    if (std::ranges::none_of(inputs, is_alike)) return end_of(input, parts).string();
+  }
+  return input.string();
+}
+
+}  // namespace
 
 Summary Session::summary(std::size_t cloud) const {
   const Lock lock(state_->mutex);
@@ -26,8 +54,10 @@ Summary Session::summary(std::size_t cloud) const {
   summary.scene = s.scenes[cloud];
   summary.scales = s.described[cloud]->cloud.scales;
   const auto painted = s.painted_of_each();
+  std::vector<std::filesystem::path> inputs;
+  for (std::size_t k = 0; k < s.scenes.size(); ++k) inputs.push_back(s.input_of(k));
   for (std::size_t k = 0; k < s.scenes.size(); ++k) {
-    summary.clouds.push_back({.file = s.input_of(k).filename().string(),
+    summary.clouds.push_back({.file = name_apart(inputs, k),
                               .points = s.scenes[k]->cloud.size(),
                               .painted = painted[k]});
   }
