@@ -79,6 +79,12 @@ class LinesLabels(LinesTest):
             self.assertIn(f"{path}: {said}", done.stderr)
             self.assertEqual("its labels are used" in done.stderr, column == "is_edge")
             self.assertEqual(self.stated_count(done), 12)
+            las_file = path.with_suffix(".las")
+            run("convert", path, "-o", las_file)
+            done = run("lines", las_file, *self.outputs("obj"), "--overwrite", "--max-memory", "90M")
+            self.assertIn("classified in tiles", done.stderr)
+            self.assertEqual(f"{las_file}: its column is_edge is read as labels only of a cloud that fits into memory\n"
+                             in done.stderr, column == "is_edge")
 
     def test_labels_of_las_count_in_any_type(self):
         """Extra bytes of a label are float where CloudCompare writes them. %6C keeps the reader of PLY from the column."""

@@ -132,13 +132,20 @@ void read_labelled(const LinesArguments& arguments, StageClock& clock, LabelledC
   labelled.found = std::move(classified.found);
 }
 
-/// Whether a point of the file has a label: reads up to the first that has.
+/// Whether a point of the file has a label: reads up to the first that has. What the numbers of a
+/// column of edges mean, only all of them tell, so that it is passed over here, with a warning.
 bool has_labels(const LinesArguments& arguments, const Progress& progress) {
   if (!arguments.codes.empty()) return true;
   const auto reader = tiles::open_chunks(arguments.input);
   for (std::size_t chunk = 0; chunk < reader->parts(); ++chunk) {
     throw_if_cancelled(&progress);
-    const auto given = formats::labels_of(tiles::read_finished(*reader, chunk), arguments.input);
+    const PointCloud part = tiles::read_finished(*reader, chunk);
+    const auto given = formats::labels_of(part, arguments.input);
+    const auto column = given.empty() ? formats::edge_column_of(part) : std::nullopt;
+    if (column) {
+      warn(fmt::format("{}: its column {} is read as labels only of a cloud that fits into memory",
+                       arguments.input, column->column));
+    }
     if (given.empty() || formats::have_labels(given)) return !given.empty();
   }
   return false;
