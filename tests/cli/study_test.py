@@ -35,6 +35,8 @@ class Study(CliTest):
             self.assertIsInstance(study[key], str)
             self.assertTrue(study[key])
         sets = {s["name"]: [c["name"] for c in s["clouds"]] for s in study["sets"]}
+        for cloud in (c for s in study["sets"] for c in s["clouds"]):  # a report may be made from anywhere
+            self.assertTrue((self.folder / "out" / cloud["file"]).is_file(), cloud["file"])
         variants = {v["id"]: v for v in study["variants"]}
         self.assertEqual(len(variants), len(study["variants"]))
         for variant in variants.values():
@@ -91,7 +93,7 @@ class Study(CliTest):
         study = self.read("methods")
         self.assertEqual([v["id"] for v in study["variants"]], ["m\ufffd", "ca"])
         self.assertEqual([(c["name"], c["file"]) for c in study["sets"][0]["clouds"]],
-                         [("cube4", "t\ufffdst/cube4.ply"), ("c\ufffdbe", "t\ufffdst/c\ufffdbe.ply")])
+                         [("cube4", "../t\ufffdst/cube4.ply"), ("c\ufffdbe", "../t\ufffdst/c\ufffdbe.ply")])
         os.rename(odd + b"/cube4.ply", odd + b"/c\xe4be.ply")
         done = subprocess.run([*command[:-1], "other"], cwd=self.folder, capture_output=True)
         self.assertEqual(done.returncode, 2, done.stderr)

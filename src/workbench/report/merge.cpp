@@ -178,7 +178,7 @@ struct Exhibit {
 
 fs::path find_cloud(const std::string& name, const fs::path& folder, const fs::path& study) {
   std::error_code error;
-  for (const fs::path& written : {fs::path(name), folder / name}) {
+  for (const fs::path& written : {folder / name, fs::path(name)}) {
     const fs::path candidate = formats::find_written(written);
     if (fs::is_regular_file(candidate, error)) return fs::weakly_canonical(candidate);
   }

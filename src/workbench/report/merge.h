@@ -45,7 +45,7 @@ struct MergedStudies {
 /// truth::read_labelled(). See Scene and pack_classes() for the encoding. With MergeOptions::lines,
 /// a scene has the "lines" of its truth and each prediction its own: see find_drawn_lines().
 ///
-/// A cloud's file is searched from the working folder, then from `folder`; predictions are
+/// A cloud's file is searched from `folder`, then from the working folder; predictions are
 /// <folder>/<predictions>/<cloud>.u8. Throws Error(kUnreadable) for a file that is missing or
 /// differs from the study's record, or for the first that is no JSON where there is no study,
 /// Error(kInsufficient) if there is neither, if a cloud has no labels, or if predictions or labels

@@ -54,14 +54,21 @@ const char* name_of(eval::Positive positive) {
   return positive == eval::Positive::kEdge ? "edge" : "sharp";
 }
 
-OrderedJson sets_of(const Study& study) {
+/// As seen from the study's folder, so that a report can be made from anywhere.
+std::string seen_from(const fs::path& folder, const std::string& file) {
+  if (folder.empty() || fs::path(file).is_absolute()) return file;
+  return fs::proximate(file, folder).string();
+}
+
+OrderedJson sets_of(const Study& study, const fs::path& folder) {
   OrderedJson sets = OrderedJson::array();
   for (const auto& set : study.sets) {
     OrderedJson clouds = OrderedJson::array();
     for (const StudyCloud& cloud : set->clouds) {
       if (cloud.file.empty()) continue;  // not available to a page
-      clouds.push_back(
-          {{"name", cloud.name}, {"points", cloud.cloud.size()}, {"file", cloud.file}});
+      clouds.push_back({{"name", cloud.name},
+                        {"points", cloud.cloud.size()},
+                        {"file", seen_from(folder, cloud.file)}});
     }
     sets.push_back({{"name", set->name}, {"positive", name_of(set->positive)}, {"clouds", clouds}});
   }
@@ -276,7 +283,7 @@ std::optional<double> joules_per_thousand(const Result& result, Phase phase) {
   return std::nullopt;
 }
 
-std::string to_json(const Study& study, const FileOptions& options) {
+std::string to_json(const Study& study, const FileOptions& options, const fs::path& folder) {
   const Experiment& experiment = study.experiment;
   OrderedJson json = {{"schema", "pcednet-study-1"}, {"experiment", experiment.name},
                       {"title", experiment.title},   {"question", experiment.question},
@@ -289,7 +296,7 @@ std::string to_json(const Study& study, const FileOptions& options) {
             ? "read from the RAPL counters of the processor"
             : fmt::format("estimated: processor seconds x {} W per core", options.watts_per_core);
   }
-  json["sets"] = sets_of(study);
+  json["sets"] = sets_of(study, folder);
   json["variants"] = variants_of(study);
   json["results"] = OrderedJson::array();
   for (const Result& result : study.results) json["results"].push_back(result_of(study, result));
@@ -320,7 +327,7 @@ void write_study(const fs::path& folder, const Study& study, const FileOptions& 
                       Overwrite::kYes);
     }
   }
-  write_text_file(file_of(folder, name), to_json(study, options), Overwrite::kYes);
+  write_text_file(file_of(folder, name), to_json(study, options, folder), Overwrite::kYes);
 }
 
 std::string to_table(const Study& study) {

@@ -15,8 +15,10 @@ struct FileOptions {
   double watts_per_core = 0;
 };
 
-/// The study as JSON of schema "pcednet-study-1", see docs/study.md.
-std::string to_json(const Study& study, const FileOptions& options);
+/// The study as JSON of schema "pcednet-study-1", see docs/study.md. Relative files of clouds are
+/// given as seen from `folder`; if that is empty, from the working folder.
+std::string to_json(const Study& study, const FileOptions& options,
+                    const std::filesystem::path& folder = {});
 
 /// Writes `folder`/NAME.json, and the predictions of the methods as
 /// `folder`/predictions/NAME/VARIANT/SET/CLOUD.u8, a byte a point. A file that an earlier run of
