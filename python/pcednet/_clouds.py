@@ -111,10 +111,21 @@ class Cloud:
         """The attribute `name`, also as CloudCompare spells it; None if there is none."""
         return self.attributes.get(f"scalar_{name}", self.attributes.get(name))
 
+    def _labels(self):
+        """The labels, or else those of a column that other programs give to edges, with a warning, as for the program."""
+        if self.labels is not None:
+            return self.labels
+        columns = {str(name): _attribute(name, values, len(self)) for name, values in self.attributes.items()
+                   if "edge" in str(name).lower() or "label" in str(name).lower()}
+        labels, column = _core.edge_column(columns, len(self)) or (None, None)
+        if column is not None:
+            _arrays.warn([f"{self.name or 'the cloud'}: labels from its column {column}"])
+        return labels
+
     def _classes(self):
         """What a classification left, unless the labels were changed since the result was read, otherwise the labels."""
         found = self._scalar("edge_class")
-        return self.labels if found is None or self._corrected() is not None else found
+        return self._labels() if found is None or self._corrected() is not None else found
 
     def _has_float32(self):
         """Whether the positions are those of float32 and were not changed to others."""
@@ -141,10 +152,10 @@ class Cloud:
         those of its input, with a warning that begins with `name`, unless the labels were changed since it was read."""
         found = self._truth_of_result() if self.labels is None or self._has_predictions() else None
         if found is None:
-            return self.labels
+            return self._labels()
         labels, note = found
         _arrays.warn([f"{self.name or name}: {note}"])
-        return self.labels if labels is None else labels
+        return self._labels() if labels is None else labels
 
     def _corrected(self):
         """The labels, if they were changed in a result since it was read: they are true; otherwise None."""

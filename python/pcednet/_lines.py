@@ -97,8 +97,8 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     xyz : array_like, (n, 3), or Cloud
     labels : Result or array_like (n,), optional
         A Result brings its normals and probabilities. None: those of a Cloud, its ``edge_class`` (which a
-        classification leaves) or else its labels, with its ``p_sharp`` and ``p_smooth``; without any,
-        or if all are 255, the points are classified first.
+        classification leaves) or else its labels or a column ``is_edge``, ``edge`` or ``edge_label``, with its
+        ``p_sharp`` and ``p_smooth``; without any, or if all are 255, the points are classified first.
     normals : array_like, (n, 3), optional
         With an array of labels. Estimated if missing.
     p_sharp, p_smooth : array_like, (n,), optional

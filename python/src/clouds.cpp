@@ -17,6 +17,7 @@
 #include "pcednet/detect/prepare.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/detect/result_truth.h"
+#include "pcednet/formats/labels.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/io/faces.h"
@@ -142,6 +143,20 @@ py::object truth_of_result(const py::list& comments, const py::dict& columns,
   py::object labels = py::none();
   if (!truth->labels.empty()) labels = give(std::move(truth->labels));
   return py::make_tuple(labels, text_of(truth->note));
+}
+
+/// The classes and the name of the column that formats::edge_column_of() finds among these; None if
+/// there is none.
+py::object edge_column(const py::dict& columns, std::size_t points) {
+  PointCloud cloud;
+  cloud.positions.resize(points, Vec3::Zero());
+  for (const auto& [name, values] : columns) {
+    cloud.attributes.push_back(
+        attribute_of(bytes_of_text(name), py::reinterpret_borrow<py::array>(values)));
+  }
+  auto found = formats::edge_column_of(cloud);
+  if (!found) return py::none();
+  return py::make_tuple(give(std::move(found->classes)), text_of(found->column));
 }
 
 py::tuple state_of(const std::string& text, const std::vector<std::byte>& bytes) {
@@ -303,6 +318,7 @@ void add_clouds(py::module_& module) {
   module.attr("RESULT_COLUMNS") =
       std::vector<std::string>(detect::kResultColumns.begin(), detect::kResultColumns.end());
   module.def("truth_of_result", truth_of_result);
+  module.def("edge_column", edge_column);
   module.def("class_lines", [](const py::list& comments) {
     return lines_of(classes_of(bytes_of_texts(comments)));
   });

@@ -86,6 +86,25 @@ class ResultsAsTruth(CliTest):
                 pcednet.lines(cloud)
             self.assertEqual(any("edge_class is drawn" in str(one.message) for one in caught), name in "ab")
 
+    def test_columns_of_edges_are_labels_as_for_the_program(self):
+        marked = (self.predicted == 2).astype(np.float32)
+        file = self.path("marked.ply")
+        pcednet.write(file, self.result.xyz, attributes={"is_edge": marked, "other_edge": 7 * marked})
+        cloud = pcednet.read(file)
+        run("lines", file, "-o", self.path("theirs.obj"))
+        with self.assertWarnsRegex(pcednet.PcednetWarning, "^marked: labels from its column is_edge$"):
+            pcednet.lines(cloud).write(self.path("ours.obj"))
+        self.assertEqual(self.path("ours.obj").read_bytes(), self.path("theirs.obj").read_bytes())
+        run("train", file, "-o", self.path("theirs.safetensors"), "--epochs", 1, "--classes", 2)
+        with self.assertWarnsRegex(pcednet.PcednetWarning, "^marked: labels from its column is_edge$"):
+            pcednet.train(cloud, epochs=1, classes=2, name="theirs").save(self.path("ours.safetensors"))
+        self.assertEqual(self.path("ours.safetensors").read_bytes(), self.path("theirs.safetensors").read_bytes())
+        with self.assertWarnsRegex(pcednet.PcednetWarning, "^marked: labels from its column is_edge$"):
+            self.assertEqual(pcednet.evaluate(2 * marked, cloud).mcc, 1)
+        cloud["is_edge"] = marked / 2
+        with self.assertRaisesRegex(pcednet.InsufficientError, "the cloud has no labels"):
+            pcednet.evaluate(cloud, self.predicted)
+
     def test_changed_labels_count(self):
         corrected = np.where(np.arange(3000) < 500, 0, self.predicted)
         in_place = copy.deepcopy(self.result)
