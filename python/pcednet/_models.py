@@ -45,7 +45,7 @@ class Model:
     has_context : bool
         Whether a context network refines the result from the predictions around each point.
     weights : int
-        Parameters of all networks.
+        Parameters of the first network and of its context network, without those of experts.
     metadata : dict of str to str
         The file's metadata on the first network and its training.
     history : list of dict
@@ -194,7 +194,7 @@ class Model:
 
     @property
     def weights(self):
-        """int: the parameters of all networks."""
+        """int: the parameters of the first network and of its context network."""
         context = self._core.context
         return self._core.network.weights + (context.weights if context is not None else 0)
 
