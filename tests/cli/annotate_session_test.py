@@ -95,6 +95,8 @@ class AnnotateSession(AnnotateTest):
         self.assertTrue(runs[0]["current"])
         runs = server.until("/api/runs", lambda r: r[0]["held_out"])
         self.assertEqual(runs[0]["held_out"], {"strokes": 2, "accuracy": None, "start": None})
+        done = run("train", "--project", self.folder / "cube_annotation.json", "-o", self.folder / "m.safetensors", expect=3)
+        self.assertIn("cube_annotation.json: the project is not saved yet: Save project", done.stderr)
         # What is painted after the run does not belong to its model.
         server.post("/api/stroke", brush("more", 1, [(0.5, 0.4, 0.4)], radius=0.1))
         for what in ("model", "project", "cloud"):

@@ -22,6 +22,7 @@
 #include "workbench/annotate/adapt.h"
 #include "workbench/annotate/known_files.h"
 #include "workbench/annotate/learn.h"
+#include "workbench/annotate/painting.h"
 
 namespace pcednet::app {
 namespace {
@@ -115,6 +116,11 @@ void warn_of_cloud(const annotate::ProjectCloud& cloud) {
 detect::TrainedModel train_project(const TrainArguments& arguments, const Common& common,
                                    const Progress& progress) {
   const std::filesystem::path file = arguments.project;
+  if (!std::filesystem::exists(file) && std::filesystem::exists(annotate::journal_of(file))) {
+    throw Error(ErrorKind::kUnreadable,
+                fmt::format("{}: the project is not saved yet: Save project of the page writes it",
+                            file.string()));
+  }
   const annotate::Project project = annotate::read_project(file);
   const std::size_t clouds = project.inputs.size();
   const std::vector<std::string>& given = arguments.inputs;
