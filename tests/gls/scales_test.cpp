@@ -251,6 +251,9 @@ TEST(Scales, KeepGivenBoundsAndRefuseImpossibleOnes) {
     EXPECT_ERROR(ErrorKind::kUsage, range_of(cloud.positions, bad));
   }
   EXPECT_ERROR(ErrorKind::kUsage, range_of(cloud.positions, {0, 1e-5}));
+  const auto error = pcednet::test::error_of([&] { range_of(cloud.positions, {0.1 + 0.2, 0.1}); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(std::string(error->what()).find("no scales from 0.3 to 0.1: "), 0u) << error->what();
 }
 
 }  // namespace

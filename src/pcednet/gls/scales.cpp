@@ -28,7 +28,7 @@ void check_given(double bound, const char* name) {
   if (bound >= 0.0 && std::isfinite(bound)) return;
   throw Error(
       ErrorKind::kUsage,
-      fmt::format("{} is {}: a positive length is needed, or 0 for the cloud's own", name, bound));
+      fmt::format("{} is {}: a positive number is needed, or 0 for the cloud's own", name, bound));
 }
 
 /// Block by block: in another order the last digits of every s_min would change.
@@ -156,10 +156,11 @@ ScaleRange scale_range(std::span<const Vec3> positions, const ScaleRange& given,
   }
   throw Error(
       ErrorKind::kUsage,
-      fmt::format("no scales from {} to {}: the largest, s_max, must be above the smallest, "
-                  "s_min, which is {}",
-                  range.s_min, range.s_max,
-                  given.s_min > 0.0 ? "given" : "the spacing of the points if not given"));
+      fmt::format(
+          "no scales from {:.6g} to {:.6g}: the largest, s_max, must be above the smallest, "
+          "s_min, which is {}",
+          range.s_min, range.s_max,
+          given.s_min > 0.0 ? "given" : "the spacing of the points if not given"));
 }
 
 std::string note_on_extent(const ScaleSpaceOptions& options, double diagonal,
