@@ -242,6 +242,10 @@ class Train(CliTest):
             write_ply(a, p, n, **columns)
             done = run("train", a, "-o", self.folder / "m.safetensors", expect=4)
             self.assertIn(f"{a}: has no labels, as {said}", done.stderr)
+        words = self.folder / "words.csv"
+        words.write_text("x,y,z,label\n" + "".join(f"{x},{y},{z},edge\n" for x, y, z in p))
+        done = run("train", words, "-o", self.folder / "m.safetensors", expect=4)
+        self.assertIn("as no column is named label; columns of text are left out: label\n", done.stderr)
 
     def test_learns_from_the_codes_of_las(self):
         p, n, label = cube(1500, seed=4)

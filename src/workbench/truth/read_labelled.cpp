@@ -115,8 +115,10 @@ io::LoadedCloud read_labelled(const std::filesystem::path& path) {
   }
   cloud.labels = labels_of_colours(cloud);
   if (cloud.labels.empty()) {
+    std::string why = why_unlabelled(cloud);
+    for (const std::string& warning : loaded.warnings) why += "; " + warning;
     throw Error(ErrorKind::kInsufficient,
-                fmt::format("{}: has no labels, as {}", path.string(), why_unlabelled(cloud)));
+                fmt::format("{}: has no labels, as {}", path.string(), why));
   }
   loaded.warnings.emplace_back("labels from the colours: grey, yellow and red are the classes");
   take_truth_of_result(loaded);
