@@ -41,18 +41,29 @@ int status_of(const std::exception& error) {
 
 }  // namespace
 
+bool is_own_host(std::string_view host, int port) {
+  constexpr int kPortOfHttp = 80;
+  for (const char* name : {"127.0.0.1", "localhost"}) {
+    if (host == fmt::format("{}:{}", name, port) || (port == kPortOfHttp && host == name)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 Api::Api(Session& session, Events& events, std::string token, int port)
     : session_(session), events_(events), token_(std::move(token)), port_(port) {}
 
 std::optional<Response> Api::refuse(const Request& request) const {
-  const std::string here = fmt::format("127.0.0.1:{}", port_);
-  const std::string named = fmt::format("localhost:{}", port_);
-  const std::string host = value_of(request.headers, "host");
-  if (host != here && host != named) return error_response(403, "another host is asked for");
-  if (const auto origin = request.headers.find("origin"); origin != request.headers.end() &&
-                                                          origin->second != "http://" + here &&
-                                                          origin->second != "http://" + named) {
-    return error_response(403, "asked by a page of another origin");
+  if (!is_own_host(value_of(request.headers, "host"), port_)) {
+    return error_response(403, "another host is asked for");
+  }
+  if (const auto origin = request.headers.find("origin"); origin != request.headers.end()) {
+    constexpr std::string_view kScheme = "http://";
+    const std::string_view asked_by = origin->second;
+    if (!asked_by.starts_with(kScheme) || !is_own_host(asked_by.substr(kScheme.size()), port_)) {
+      return error_response(403, "asked by a page of another origin");
+    }
   }
   const bool is_api = request.path.starts_with("/api");
   if (is_api) {

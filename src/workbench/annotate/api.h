@@ -2,12 +2,17 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "workbench/annotate/http.h"
 #include "workbench/annotate/session.h"
 #include "workbench/annotate/windows.h"
 
 namespace pcednet::annotate {
+
+/// Whether the `Host` of a request is this machine at `port`, as 127.0.0.1:8080; browsers leave out
+/// port 80.
+bool is_own_host(std::string_view host, int port);
 
 /// The requests of docs/annotate.md. May be called from many threads.
 class Api {
