@@ -40,6 +40,13 @@ class Outputs(CliTest):
         """Of which a conversion writes long enough to be halted."""
         write_ply(self.cloud, np.random.default_rng(1).uniform(0.0, 1.0, (1_500_000, 3)))
 
+    def test_describe_tells_what_it_wrote(self):
+        out = self.folder / "a.npy"
+        said = run("describe", self.cloud, "-o", out, "--s-min", 0.1, "--s-max", 0.4, "--scales", 4).stderr
+        self.assertEqual(np.load(out).shape, (2000, 4, 6))
+        self.assertTrue(said.endswith(f"a.ply: 2000 points, 4 scales from 0.1 to 0.4, 6 numbers at each\n"
+                                      f"  -> {out}, {out.with_suffix('.json')}\n"), said)
+
     def test_one_of_three_runs_at_once_wins(self):
         self.write_large_cloud()
         out = self.folder / "out.ply"

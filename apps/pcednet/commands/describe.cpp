@@ -131,6 +131,10 @@ void describe(const DescribeArguments& arguments, const Common& common) {
   settings.write(to_text(to_json(arguments, space, cloud.size(), counts), 2, NotUtf8::kReplace) +
                  "\n");
   settings.commit();
+  const std::vector<double>& scales = space.scales();
+  say(fmt::format("{}: {} points, {} scales from {:.4g} to {:.4g}, {} numbers at each\n  -> {}, {}",
+                  arguments.input, cloud.size(), scales.size(), scales.front(), scales.back(),
+                  width, output.string(), beside.string()));
 }
 
 }  // namespace
