@@ -11,12 +11,14 @@
 #include <set>
 #include <sstream>
 #include <string_view>
+#include <system_error>
 
 #include "number_options.h"
 #include "pcednet/core/exists_already.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/core/stopwatch.h"
 #include "pcednet/formats/read_cloud.h"
+#include "pcednet/formats/virtual_cloud.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::app {
@@ -171,6 +173,18 @@ void check_ascii(bool ascii, const std::vector<std::filesystem::path>& outputs) 
   throw Error(ErrorKind::kUsage,
               fmt::format("{}: --ascii is for .ply and .pcd files, and none is an output",
                           outputs.front().string()));
+}
+
+void check_one_cloud(const char* command, const std::string& input) {
+  std::error_code ignored;
+  const char* const what = std::filesystem::is_directory(input, ignored) ? "is a folder"
+                           : formats::is_virtual_cloud(input)            ? "names other files"
+                                                                         : nullptr;
+  if (!what) return;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("{}: {}; {} takes one cloud: give its files one by one, or make one of "
+                          "them with pcednet tiles plan, run and join",
+                          input, what, command));
 }
 
 void check_distinct(const std::vector<std::filesystem::path>& outputs) {

@@ -92,6 +92,10 @@ io::LoadedCloud read_whole(const std::filesystem::path& file);
 /// others have no --ascii.
 void check_ascii(bool ascii, const std::vector<std::filesystem::path>& outputs);
 
+/// Throws Error(kUsage) if the input of `command`, which takes one cloud, is a folder or a list of
+/// files.
+void check_one_cloud(const char* command, const std::string& input);
+
 /// Throws Error(kUsage) if two of the outputs, of which some may be empty, are one file.
 void check_distinct(const std::vector<std::filesystem::path>& outputs);
 

@@ -182,7 +182,10 @@ class Outputs(CliTest):
                  f"a={file}", "-o", file),
                 (2, f"{folder}: is a folder", "evaluate", file, "--model", "scan", "--json", folder),
                 (1, f"{file} is not a folder", "convert", file, "-o", file / "x.ply"),
-                (3, f"{folder}: is a folder", "convert", folder, "-o", self.folder / "x.ply"),
+                (2, f"{folder}: is a folder; convert takes one cloud", "convert", folder, "-o", self.folder / "x.ply"),
+                (2, "city.vpc: names other files; convert takes one cloud", "convert", "city.vpc", "-o", "x.laz"),
+                (2, f"{folder}: is a folder; normals takes one cloud", "normals", folder, "-o", self.folder / "x.ply"),
+                (2, f"{folder}: is a folder; describe takes one cloud", "describe", folder, "-o", self.folder / "x.npy"),
                 (3, f"{folder}: is a folder", "annotate", folder, "--no-browser"),
                 (2, f"{folder}: is a folder; lines takes one cloud", "lines", folder, "-o", self.folder / "x.obj"),
                 (2, "city.vpc: names other files; lines takes one cloud: give its files one by one, or make one of "

@@ -153,6 +153,7 @@ bool convert_in_parts(const ConvertRequest& request, const Common& common) {
 void convert(const ConvertRequest& request, const Common& common) {
   // Fails before a long read if the output cannot be written.
   formats::format_for(request.output);
+  check_one_cloud("convert", request.input);
   check_ascii(request.ascii, {request.output});
   if (changes_points(request)) check_not_input(request.output, request.input);
   check_sample_fits(request);

@@ -104,6 +104,7 @@ void describe(const DescribeArguments& arguments, const Common& common) {
   const gls::ScaleSpaceOptions& options = arguments.options;
   // Fails before the work if the output cannot be written.
   const fs::path beside = fs::path(output).replace_extension(".json");
+  check_one_cloud("describe", arguments.input);
   for (const fs::path& file : {output, beside}) check_not_input(file, arguments.input);
   check_writable(output, common.overwrite());
   OutputFile settings(beside, common.overwrite());

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <system_error>
 
 #include "batch.h"
 #include "classify_cloud.h"
@@ -18,7 +17,6 @@
 #include "pcednet/core/error.h"
 #include "pcednet/detect/averages.h"
 #include "pcednet/formats/labels.h"
-#include "pcednet/formats/virtual_cloud.h"
 #include "pcednet/io/drawing/drawing.h"
 #include "pcednet/io/drawing/line_classes.h"
 #include "pcednet/io/las/las.h"
@@ -42,19 +40,6 @@ struct LabelledCloud {
   std::vector<std::uint8_t> partial = {};
   bool given = false;  ///< the labels are those of the file, which was read whole
 };
-
-void check_input(const std::string& input) {
-  std::error_code ignored;
-  const char* const what = fs::is_directory(input, ignored)   ? "is a folder"
-                           : formats::is_virtual_cloud(input) ? "names other files"
-                                                              : nullptr;
-  if (!what) return;
-  throw Error(
-      ErrorKind::kUsage,
-      fmt::format("{}: {}; lines takes one cloud: give its files one by one, or make one of "
-                  "them with pcednet tiles plan, run and join",
-                  input, what));
-}
 
 /// Lines that were drawn before are no points of a surface.
 void warn_of_lines(const std::string& file, const PointCloud& cloud) {
@@ -255,7 +240,7 @@ io::CoordinateSystem coordinate_system(const LinesArguments& arguments, const Po
 void run(LinesArguments arguments, const Common& common) {
   arguments.codes = label_codes(arguments.las_classification);
   arguments.drawing.overwrite = common.overwrite();
-  check_input(arguments.input);
+  check_one_cloud("lines", arguments.input);
   check_outputs(arguments);
   find_model(arguments.model.name);  // throws before the work
   StageClock clock(console_progress(common));

@@ -79,6 +79,7 @@ void report(const NormalsRequest& request, const normals::PreparedNormals& prepa
 void run(const NormalsRequest& request, const Common& common) {
   // Fails before a long read if the output cannot be written.
   formats::format_for(request.output);
+  check_one_cloud("normals", request.input);
   check_writable(request.output, common.overwrite());
   PointCloud cloud = read_cloud(request.input);
   if (cloud.empty()) {
