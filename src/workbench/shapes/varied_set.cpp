@@ -107,11 +107,10 @@ std::vector<Recipe> thinned_recipes(std::uint64_t seed) {
 }
 
 std::vector<CadRecipe> sparse_part_recipes(std::uint64_t seed) {
-  constexpr int kPartsPerFamily = 80;
+  constexpr int kParts = 80;
   constexpr std::size_t kWorn = 48;
   std::vector<CadRecipe> recipes = parts_of_each_family(
-      kPartsPerFamily,
-      [seed](int family, int number) { return sparse_part(family, number, seed); });
+      kParts, [seed](int family, int number) { return sparse_part(family, number, seed); });
   std::vector<CadRecipe> worn = worn_recipes(seed + 2000);
   worn.resize(std::min(worn.size(), kWorn));
   for (CadRecipe& recipe : worn) {
