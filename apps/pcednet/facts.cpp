@@ -242,6 +242,17 @@ std::string text_of(const std::map<int, std::size_t>& counts, const NameOf& name
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+/// The code of the coordinate system and the name that its definition begins with; the definition
+/// where there is no code.
+std::string system_text(const io::LasFacts& las) {
+  const std::string& wkt = las.coordinate_system;
+  if (las.code.empty()) return wkt.empty() ? "of no coordinate system that the file names" : wkt;
+  const std::size_t begin = wkt.find('"');
+  if (begin == std::string::npos) return las.code;
+  return fmt::format("{}, {}", las.code,
+                     wkt.substr(begin + 1, wkt.find('"', begin + 1) - begin - 1));
+}
+
 void add(const io::LasFacts& las, Lines& lines) {
   const auto add_known = [&](const char* name, const std::string& text) {
     if (!text.empty()) lines.add(name, text);
@@ -256,9 +267,7 @@ void add(const io::LasFacts& las, Lines& lines) {
                                    las.created_day, las.created_year));
   lines.add("scale", spelled_list(las.scale));
   lines.add("offset", spelled_list(las.offset));
-  const bool is_known = !las.code.empty() || !las.coordinate_system.empty();
-  add_known("coordinates", is_known ? las.code : "of no coordinate system that the file names");
-  add_known("coordinates", las.coordinate_system);
+  lines.add("coordinates", system_text(las));
   for (const io::LasFacts::Record& record : las.records) {
     lines.add("record",
               fmt::format("{} {}, {} bytes{}{}", record.user_id, record.record_id, record.bytes,

@@ -54,13 +54,15 @@ class Info(CliTest):
 
     def test_names_the_coordinate_system_by_its_code(self):
         keys = struct.pack("<16H", 1, 1, 0, 3, 1024, 0, 1, 1, 3072, 0, 1, 25832, 4096, 0, 1, 7837)
-        wkt = b'PROJCS["a",GEOGCS["b"],AUTHORITY["EPSG","25833"]]\0'
+        wkt = b'PROJCS["a zone",GEOGCS["b"],AUTHORITY["EPSG","25833"]]\0'
+        unknown = b'PROJCS["mine",GEOGCS["b"]]\0'
         path = self.folder / "a.las"
         for records, code, said in [
                 ([], "", "coordinates    of no coordinate system that the file names\n"),
                 ([(34735, keys)], "EPSG:25832+7837", "coordinates    EPSG:25832+7837\n"),
-                ([(2112, wkt)], "EPSG:25833", "coordinates    EPSG:25833\n  coordinates    PROJCS[")]:
-            with self.subTest(code=code):
+                ([(2112, wkt)], "EPSG:25833", "coordinates    EPSG:25833, a zone\n"),
+                ([(2112, unknown)], "", 'coordinates    PROJCS["mine",GEOGCS["b"]]\n')]:
+            with self.subTest(said=said):
                 vlrs = [vlr(b"LASF_Projection", number, data) for number, data in records]
                 path.write_bytes(las(6, random_rows(FORMATS[6], 20), vlrs))
                 self.assertEqual(self.info(path)[0]["las"]["coordinate_system_code"], code)
