@@ -95,7 +95,8 @@ struct Said {
   std::map<std::string, std::pair<const IndexedInput*, ExtraMeaning>> meanings = {};
   const IndexedInput* bytes = nullptr;    ///< has extra bytes without description
   std::optional<std::size_t> timed = {};  ///< the first with GPS times
-  std::size_t system = 0;                 ///< names most of the coordinate system
+  std::vector<int> system_ranks = {};     ///< system_rank() of each input
+  std::size_t system = 0;                 ///< the first input of the highest rank
 };
 
 /// Throws unless two systems are the same, as far as both are named.
@@ -133,9 +134,9 @@ void check_las(std::vector<IndexedInput>& inputs, std::size_t i, Said& said) {
   const io::LasFile file = io::attached_las_file(input.outline);
   compare_extra_bytes(input, file, said);
   compare_times(inputs, i, said);
-  const IndexedInput& named = inputs[said.system];
-  check_systems(named, input);
-  if (system_rank(file) > system_rank(io::attached_las_file(named.outline))) said.system = i;
+  check_systems(inputs[said.system], input);
+  said.system_ranks.push_back(system_rank(file));
+  if (said.system_ranks[i] > said.system_ranks[said.system]) said.system = i;
   if (i > 0 && (has_waveforms(file) || has_waveforms(io::attached_las_file(inputs[0].outline)))) {
     refuse_pair(inputs[0], input,
                 "have waveforms, and the tiles could keep those of one file only");
@@ -189,12 +190,10 @@ void note_left_out(const std::vector<IndexedInput>& inputs, const Said& said, Pl
 
 /// Notes the inputs that name less of the coordinate system than another.
 void note_systems(const std::vector<IndexedInput>& inputs, const Said& said, Plan& plan) {
-  const int most = system_rank(io::attached_las_file(inputs[said.system].outline));
-  for (const int rank : {0, 1}) {
+  for (int rank = 0; rank < said.system_ranks[said.system]; ++rank) {
     std::vector<std::string> names;
-    for (const IndexedInput& input : inputs) {
-      const bool is_such = system_rank(io::attached_las_file(input.outline)) == rank;
-      if (is_such && rank < most) names.push_back(input.input.path.string());
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      if (said.system_ranks[i] == rank) names.push_back(inputs[i].input.path.string());
     }
     if (names.empty()) continue;
     plan.notes.push_back(fmt::format("{}: no {} named: taken for that of {}", some_of(names),
