@@ -186,10 +186,7 @@ LoadedCloud read_obj(const InputFile& file) {
   cloud.comments = std::move(statements.comments);
   const std::size_t coloured = statements.colours[0].size();
   if (coloured == cloud.size() && coloured > 0) {
-    cloud.attributes = {make_attribute("red", statements.colours[0]),
-                        make_attribute("green", statements.colours[1]),
-                        make_attribute("blue", statements.colours[2])};
-    promote_colours(cloud, loaded.warnings);
+    add_colours(statements.colours, cloud, loaded.warnings);
   } else if (coloured > 0) {
     loaded.warnings.push_back(
         fmt::format("colours of {} of {} points are not kept", coloured, cloud.size()));

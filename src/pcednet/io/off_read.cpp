@@ -32,7 +32,10 @@ class OffText {
     read_counts();
     for (std::uint64_t i = 0; i < vertices_; ++i) read_vertex(i);
     for (std::uint64_t i = 0; i < faces_; ++i) read_face(i);
-    add_colours();
+    if (!colours_[0].empty()) add_colours(colours_, cloud_, loaded_.warnings);
+    if (!alphas_.empty() && alphas_.size() == cloud_.size()) {
+      cloud_.attributes.push_back(make_attribute("alpha", alphas_));
+    }
     if (!sizes_.empty()) cloud_.foreign_elements = {make_face_element(sizes_, corners_)};
     warn_of_omissions();
     return std::move(loaded_);
@@ -115,7 +118,7 @@ class OffText {
     if (layout_.colours) {
       const bool has_alpha = count > least;
       for (std::size_t c = 0; c < 3; ++c) colours_[c].push_back(number(words_[at++]));
-      if (has_alpha) colours_[3].push_back(number(words_[at++]));
+      if (has_alpha) alphas_.push_back(number(words_[at++]));
     }
     if (layout_.texture) at += 2;
     if (at < count) ++vertices_with_more_;
@@ -141,16 +144,6 @@ class OffText {
     if (words_.size() > *size + 1) ++faces_with_colours_;
   }
 
-  void add_colours() {
-    if (colours_[0].empty()) return;
-    cloud_.attributes = {make_attribute("red", colours_[0]), make_attribute("green", colours_[1]),
-                         make_attribute("blue", colours_[2])};
-    if (colours_[3].size() == cloud_.size()) {
-      cloud_.attributes.push_back(make_attribute("alpha", colours_[3]));
-    }
-    promote_colours(cloud_, loaded_.warnings);
-  }
-
   void warn_of_omissions() {
     const auto warn = [&](std::uint64_t count, const char* what) {
       if (count > 0) loaded_.warnings.push_back(fmt::format("{} {}", count, what));
@@ -169,7 +162,8 @@ class OffText {
   std::vector<std::string_view> words_;
   VertexLayout layout_;
   std::uint64_t vertices_ = 0, faces_ = 0;  ///< as declared
-  std::array<std::vector<double>, 4> colours_;
+  std::array<std::vector<double>, 3> colours_;
+  std::vector<double> alphas_;
   std::vector<std::uint32_t> sizes_, corners_;  ///< of the faces
   std::uint64_t vertices_with_more_ = 0, faces_with_colours_ = 0;
   LoadedCloud loaded_;

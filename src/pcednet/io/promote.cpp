@@ -183,6 +183,15 @@ void promote_colours(PointCloud& cloud, std::vector<std::string>& warnings) {
   promote_packed(cloud);
 }
 
+void add_colours(const std::array<std::vector<double>, 3>& columns, PointCloud& cloud,
+                 std::vector<std::string>& warnings) {
+  constexpr const char* kNames[] = {"red", "green", "blue"};
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    cloud.attributes.push_back(make_attribute(kNames[c], columns[c]));
+  }
+  promote_colours(cloud, warnings);
+}
+
 LoadedCloud keep_spelled_digits(LoadedCloud declared,
                                 const std::function<LoadedCloud()>& read_wide) {
   const auto is_far = [](double v) { return std::isfinite(v) && std::abs(v) >= 1e4; };

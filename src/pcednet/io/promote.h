@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -38,6 +39,10 @@ void promote_labels(PointCloud& cloud);
 /// rounds; the packed rgb or rgba of PCD unpacked (an alpha other than 255 becomes the attribute
 /// `alpha`). Beside packed colours 16-bit ones stay attributes.
 void promote_colours(PointCloud& cloud, std::vector<std::string>& warnings);
+
+/// Adds columns of red, green and blue, and makes them colours as promote_colours() does.
+void add_colours(const std::array<std::vector<double>, 3>& columns, PointCloud& cloud,
+                 std::vector<std::string>& warnings);
 
 /// For a text file that declares its positions float but may give them more digits: `declared`,
 /// read with the declared type, unless float changes a coordinate beyond 10,000, as in national
