@@ -10,9 +10,9 @@
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random.h"
+#include "pcednet/gls/engine/fast_scale_space.h"
+#include "pcednet/gls/engine/target_groups.h"
 #include "pcednet/gls/exact_scale_space.h"
-#include "pcednet/gls/fast_scale_space.h"
-#include "pcednet/gls/target_groups.h"
 
 namespace pcednet::gls {
 namespace {

@@ -10,8 +10,8 @@
 #include "gls/test_clouds.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/random.h"
+#include "pcednet/gls/engine/fast_scale_space.h"
 #include "pcednet/gls/exact_scale_space.h"
-#include "pcednet/gls/fast_scale_space.h"
 #include "pcednet/spatial/curve_order.h"
 #include "support/expect_error.h"
 

@@ -5,7 +5,7 @@
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/detect/classify.h"
-#include "pcednet/gls/scale_space.h"
+#include "pcednet/gls/engine/scale_space.h"
 #include "pcednet/gls/scales.h"
 #include "workbench/shapes/default_set.h"
 

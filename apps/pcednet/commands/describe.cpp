@@ -15,7 +15,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/json.h"
 #include "pcednet/core/version.h"
-#include "pcednet/gls/scale_space.h"
+#include "pcednet/gls/engine/scale_space.h"
 #include "pcednet/io/npy.h"
 
 namespace pcednet::app {

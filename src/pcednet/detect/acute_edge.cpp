@@ -9,7 +9,7 @@
 
 #include "pcednet/detect/distinct_points.h"
 #include "pcednet/detect/spread.h"
-#include "pcednet/gls/scale_space.h"
+#include "pcednet/gls/engine/scale_space.h"
 #include "pcednet/spatial/neighbour_search.h"
 
 namespace pcednet::detect {

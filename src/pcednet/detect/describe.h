@@ -9,7 +9,7 @@
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/prepare.h"
-#include "pcednet/gls/scale_space.h"
+#include "pcednet/gls/engine/scale_space.h"
 
 namespace pcednet::detect {
 

@@ -8,7 +8,7 @@
 #include "pcednet/core/progress.h"
 #include "pcednet/core/vec3.h"
 #include "pcednet/detect/prepare.h"
-#include "pcednet/gls/scale_space.h"
+#include "pcednet/gls/engine/scale_space.h"
 
 namespace pcednet::detect {
 

@@ -15,7 +15,7 @@
 #include "pcednet/detect/rounding.h"
 #include "pcednet/detect/scanner_poles.h"
 #include "pcednet/detect/thinned_cloud.h"
-#include "pcednet/gls/fast_scale_space.h"
+#include "pcednet/gls/engine/fast_scale_space.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/tiles/inputs.h"

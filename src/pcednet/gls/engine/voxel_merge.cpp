@@ -1,0 +1,390 @@
+#include "pcednet/gls/engine/voxel_merge.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "pcednet/core/parallel.h"
+#include "pcednet/core/prefetch.h"
+#include "pcednet/gls/engine/normal_spread.h"
+#include "pcednet/spatial/morton.h"
+#include "pcednet/spatial/radix_sort.h"
+
+namespace pcednet::gls {
+namespace {
+
+using spatial::Keyed;
+
+// Bits of a key below the place of a cell, and of cubes of 4 and 8 cells a side.
+constexpr int kAxisBits = 2, kGatedBits = kAxisBits + 6, kBlockBits = kAxisBits + 9;
+// A block is this many cells a side, and where it is merged further, this many voxels.
+constexpr std::uint64_t kBlockCells = 8, kBlockVoxels = 3;
+// filling() from which a block is merged further: 18 cells with normals of every direction.
+constexpr double kFillsSpace = 4.0;
+constexpr std::size_t kFewestToFill = 18;
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+Vec3 normal_of(const Voxel& voxel) {
+  return {voxel.normal[0], voxel.normal[1], voxel.normal[2]};
+}
+
+/// Sums of the points of one voxel, about a fixed place near them.
+struct VoxelSums {
+  Vec3 place = Vec3::Zero();
+  double count = 0, qq = 0, qn = 0;
+  Vec3 q = Vec3::Zero(), n = Vec3::Zero();
+
+  void add(const Voxel& voxel) {
+    if (count == 0) place = voxel.position;
+    const Vec3 offset = voxel.position - place, normal = normal_of(voxel);
+    const double c = voxel.count;
+    count += c;
+    q += c * offset;
+    n += c * normal;
+    qq += c * (offset.squaredNorm() + voxel.qq);
+    qn += c * (offset.dot(normal) + voxel.qn);
+  }
+
+  Voxel voxel() const {
+    const Vec3 mean = q / count, normal = n / count;
+    return {.position = place + mean,
+            .normal = {static_cast<float>(normal.x()), static_cast<float>(normal.y()),
+                       static_cast<float>(normal.z())},
+            .count = static_cast<float>(count),
+            .qq = static_cast<float>(std::max(0.0, qq / count - mean.squaredNorm())),
+            .qn = static_cast<float>(qn / count - mean.dot(normal))};
+  }
+};
+
+std::size_t dominant_axis(const std::array<float, 3>& n) {
+  const float x = std::abs(n[0]), y = std::abs(n[1]), z = std::abs(n[2]);
+  return x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
+}
+
+/// The cells of a level. Keys distinguish 2^20 cells along an axis; where there are more (points
+/// far from all others), cells with equal keys are compared themselves.
+class Grid {
+ public:
+  Grid(std::span<const Voxel> voxels, const MergeCells& cells)
+      : voxels_(voxels),
+        origin_(cells.origin),
+        inverse_edge_(1.0 / cells.edge),
+        cells_along_(cells.side * inverse_edge_ + 1.0) {}
+
+  /// The cell's place on the curve, then the axis of the normal.
+  std::uint64_t key(std::size_t i) const {
+    const std::array<std::uint64_t, 3> cell = cell_of(i);
+    const auto wrapped = [&](std::size_t a) { return static_cast<std::uint32_t>(cell[a] & kMost); };
+    const std::uint64_t place = spatial::morton_code({wrapped(0), wrapped(1), wrapped(2)});
+    return place << kAxisBits | dominant_axis(voxels_[i].normal);
+  }
+
+  /// The voxel within its block, if that is merged further.
+  std::size_t place_in_block(std::size_t i) const {
+    constexpr double kPerCell = static_cast<double>(kBlockVoxels) / kBlockCells;
+    std::size_t place = 0;
+    for (const double c : place_of(i)) {
+      const double offset = c - std::floor(c / kBlockCells) * kBlockCells;
+      place = place * kBlockVoxels + static_cast<std::size_t>(offset * kPerCell);
+    }
+    return place;
+  }
+
+  int key_bits() const {
+    return kAxisBits + 3 * std::bit_width(static_cast<std::uint64_t>(
+                               std::min(cells_along_, static_cast<double>(kMost))));
+  }
+
+  /// True if the keys of two voxels differ in their lowest `bits` bits only, and their cells
+  /// accordingly.
+  bool are_together(const Keyed& i, const Keyed& j, int bits) const {
+    if (i.key >> bits != j.key >> bits) return false;
+    if (cells_along_ < static_cast<double>(kMost)) return true;
+    const std::array<std::uint64_t, 3> a = cell_of(i.index), b = cell_of(j.index);
+    const int shift = (bits - kAxisBits) / 3;
+    return a[0] >> shift == b[0] >> shift && a[1] >> shift == b[1] >> shift &&
+           a[2] >> shift == b[2] >> shift;
+  }
+
+ private:
+  static constexpr std::uint64_t kMost = (1 << 20) - 1;
+
+  /// In units of the edge.
+  std::array<double, 3> place_of(std::size_t i) const {
+    const Vec3 place = (voxels_[i].position - origin_) * inverse_edge_;
+    const auto within = [](double c) { return std::clamp(c, 0.0, 0x1p62); };
+    return {within(place.x()), within(place.y()), within(place.z())};
+  }
+
+  std::array<std::uint64_t, 3> cell_of(std::size_t i) const {
+    const std::array<double, 3> place = place_of(i);
+    std::array<std::uint64_t, 3> cell;
+    for (std::size_t a = 0; a < 3; ++a) cell[a] = static_cast<std::uint64_t>(place[a]);
+    return cell;
+  }
+
+  std::span<const Voxel> voxels_;
+  Vec3 origin_;
+  double inverse_edge_, cells_along_;
+};
+
+/// Assigns each member of a block to a voxel, numbered along the curve. For two signs in one place,
+/// that of the first member comes first, so that a flip of all normals changes only the signs.
+/// Members without a normal are ignored.
+class BlockPlan {
+ public:
+  BlockPlan(std::span<const Voxel> from, const Grid& grid, Crowd crowd)
+      : from_(from), grid_(&grid), crowd_(crowd) {}
+
+  /// The voxel of each of `members`, sorted by key.
+  std::span<const std::uint32_t> plan(std::span<const Keyed> members) {
+    members_ = members;
+    voxel_of_.resize(members.size());
+    if (crowd_ == Crowd::kKeep || filling() < kFillsSpace) {
+      number_by_axis(kAxisBits);
+    } else if (crowd_ == Crowd::kMergeByAxis) {
+      number_by_axis(kGatedBits);
+    } else {
+      number_by_place();
+    }
+    return voxel_of_;
+  }
+
+  /// The number of voxels in the block last planned.
+  std::size_t count() const { return count_; }
+
+  /// MergeForecast::filling of that block: how little it resembles a surface.
+  double filling() const {
+    if (members_.size() < kFewestToFill) return 0.0;
+    NormalSpread spread;
+    std::size_t occupied = 0;
+    for_cells(kAxisBits, [&](std::size_t begin, std::size_t end) {
+      bool is_empty = true;
+      for (std::size_t i = begin; i < end; ++i) {
+        spread.add(normal_of(voxel(i)), voxel(i).count);
+        is_empty = is_empty && voxel(i).count == 0.0f;
+      }
+      occupied += is_empty ? 0 : 1;
+    });
+    return static_cast<double>(occupied) * spread.mean_sq_volume();
+  }
+
+ private:
+  const Voxel& voxel(std::size_t i) const { return from_[members_[i].index]; }
+
+  /// Calls `use(begin, end)` for the members of every cell, or cube of cells.
+  template <typename Use>
+  void for_cells(int bits, Use&& use) const {
+    for (std::size_t begin = 0, end; begin < members_.size(); begin = end) {
+      end = begin + 1;
+      while (end < members_.size() && grid_->are_together(members_[end - 1], members_[end], bits)) {
+        ++end;
+      }
+      use(begin, end);
+    }
+  }
+
+  /// One voxel per cell, axis and sign.
+  void number_by_axis(int bits) {
+    count_ = 0;
+    for_cells(bits, [&](std::size_t begin, std::size_t end) {
+      std::uint32_t number[3][2] = {{kNone, kNone}, {kNone, kNone}, {kNone, kNone}};
+      for (std::size_t i = begin; i < end; ++i) {
+        voxel_of_[i] = kNone;
+        if (voxel(i).count == 0.0f) continue;
+        const std::size_t axis = members_[i].key & 3;
+        std::uint32_t& mine = number[axis][voxel(i).normal[axis] < 0.0f];
+        if (mine == kNone) mine = count_++;
+        voxel_of_[i] = mine;
+      }
+    });
+  }
+
+  /// kBlockVoxels voxels a side.
+  void number_by_place() {
+    count_ = 0;
+    std::array<std::uint32_t, kBlockVoxels * kBlockVoxels * kBlockVoxels> number;
+    number.fill(kNone);
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+      voxel_of_[i] = kNone;
+      if (voxel(i).count == 0.0f) continue;
+      std::uint32_t& mine = number[grid_->place_in_block(members_[i].index)];
+      if (mine == kNone) mine = count_++;
+      voxel_of_[i] = mine;
+    }
+  }
+
+  std::span<const Voxel> from_;
+  const Grid* grid_;
+  Crowd crowd_;
+  std::span<const Keyed> members_;
+  std::vector<std::uint32_t> voxel_of_;
+  std::uint32_t count_ = 0;
+};
+
+/// Asks for the voxel of a later member.
+void ask_ahead(std::span<const Voxel> from, std::span<const Keyed> keyed, std::size_t i) {
+  if (i + kAskAhead < keyed.size()) prefetch(from[keyed[i + kAskAhead].index]);
+}
+
+/// Calls `use(members, voxel_of, plan)` for every block of `keyed`, which begins and ends with one.
+template <typename Use>
+void for_blocks(std::span<const Voxel> from, const Grid& grid, Crowd crowd,
+                std::span<const Keyed> keyed, Use&& use) {
+  BlockPlan plan(from, grid, crowd);
+  for (std::size_t begin = 0, end; begin < keyed.size(); begin = end) {
+    ask_ahead(from, keyed, begin);
+    for (end = begin + 1; end < keyed.size(); ++end) {
+      if (!grid.are_together(keyed[end - 1], keyed[end], kBlockBits)) break;
+      ask_ahead(from, keyed, end);
+    }
+    const auto members = keyed.subspan(begin, end - begin);
+    const std::span<const std::uint32_t> voxel_of = plan.plan(members);
+    use(members, voxel_of, plan);
+  }
+}
+
+/// Where the stretches begin that threads merge by themselves, and the end: every `length` members,
+/// or where the next block does.
+std::vector<std::size_t> stretches_of(std::span<const Keyed> keyed, const Grid& grid,
+                                      std::size_t length) {
+  std::vector<std::size_t> starts((keyed.size() + length - 1) / length + 1, keyed.size());
+  for (std::size_t s = starts.size() - 1; s-- > 0;) {
+    const std::size_t last = std::min((s + 1) * length, keyed.size());
+    std::size_t start = s * length;
+    while (start > 0 && start < last &&
+           grid.are_together(keyed[start - 1], keyed[start], kBlockBits)) {
+      ++start;
+    }
+    starts[s] = start < last ? start : starts[s + 1];
+  }
+  return starts;
+}
+
+/// How a stretch becomes voxels.
+struct StretchPlan {
+  struct Block {
+    std::uint32_t members, voxels;
+  };
+  std::vector<Block> blocks;  ///< along the curve
+  std::size_t voxels = 0;     ///< of all blocks
+};
+
+/// Plans the blocks of `keyed`, where the number of each member's voxel in its block replaces the
+/// key.
+StretchPlan plan_stretch(std::span<const Voxel> from, const Grid& grid, Crowd crowd,
+                         std::span<Keyed> keyed) {
+  StretchPlan stretch;
+  auto next = keyed.begin();
+  for_blocks(from, grid, crowd, keyed,
+             [&](std::span<const Keyed> members, std::span<const std::uint32_t> voxel_of,
+                 const BlockPlan& plan) {
+               stretch.blocks.push_back({static_cast<std::uint32_t>(members.size()),
+                                         static_cast<std::uint32_t>(plan.count())});
+               stretch.voxels += plan.count();
+               for (const std::uint32_t voxel : voxel_of) (next++)->key = voxel;
+             });
+  return stretch;
+}
+
+/// Writes the voxels of a planned stretch.
+void merge_stretch(std::span<const Voxel> from, const StretchPlan& stretch,
+                   std::span<const Keyed> keyed, Voxel* to) {
+  std::vector<VoxelSums> sums;
+  std::size_t i = 0;
+  for (const StretchPlan::Block& block : stretch.blocks) {
+    sums.assign(block.voxels, {});
+    for (const std::size_t end = i + block.members; i < end; ++i) {
+      ask_ahead(from, keyed, i);
+      if (keyed[i].key != kNone) sums[keyed[i].key].add(from[keyed[i].index]);
+    }
+    for (const VoxelSums& sum : sums) *to++ = sum.voxel();
+  }
+}
+
+/// MergeForecast, each number summed over `points`.
+struct ForecastSums {
+  double points = 0, merged = 0, filling = 0;
+};
+
+/// The forecast for the points of the voxels [begin, end), as if there were no others.
+ForecastSums forecast_stretch(std::span<const Voxel> from, const Grid& grid, Crowd crowd,
+                              std::size_t begin, std::size_t end) {
+  std::vector<Keyed> keyed;
+  keyed.reserve(end - begin);
+  for (std::size_t i = begin; i < end; ++i) {
+    keyed.push_back({grid.key(i), static_cast<std::uint32_t>(i)});
+  }
+  std::sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) {
+    return a.key != b.key ? a.key < b.key : a.index < b.index;
+  });
+  ForecastSums sums;
+  std::vector<double> merged, count;
+  for_blocks(from, grid, crowd, keyed,
+             [&](std::span<const Keyed> members, std::span<const std::uint32_t> voxel_of,
+                 const BlockPlan& plan) {
+               const double filling = crowd == Crowd::kKeep ? plan.filling() : 0.0;
+               merged.assign(plan.count(), 0.0), count.assign(plan.count(), 0.0);
+               for (std::size_t i = 0; i < members.size(); ++i) {
+                 if (voxel_of[i] == kNone) continue;
+                 merged[voxel_of[i]] += 1.0;
+                 count[voxel_of[i]] += from[members[i].index].count;
+               }
+               for (std::size_t v = 0; v < plan.count(); ++v) {
+                 sums.points += count[v];
+                 sums.merged += count[v] * merged[v];
+                 sums.filling += count[v] * filling;
+               }
+             });
+  return sums;
+}
+
+}  // namespace
+
+UnsetArray<Voxel> merge_voxels(std::span<const Voxel> from, const MergeCells& cells) {
+  constexpr std::size_t kStretch = 1 << 14;
+  const Grid grid(from, cells);
+  UnsetArray<Keyed> keyed(from.size());
+  parallel_blocks(from.size(), kStretch, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      keyed[i] = {grid.key(i), static_cast<std::uint32_t>(i)};
+    }
+  });
+  spatial::sort_by_key(keyed, grid.key_bits());
+
+  const std::vector<std::size_t> starts = stretches_of(keyed, grid, kStretch);
+  const auto members = [&](std::size_t s) {
+    return std::span<Keyed>(keyed).subspan(starts[s], starts[s + 1] - starts[s]);
+  };
+  std::vector<StretchPlan> plans(starts.size() - 1);
+  parallel_blocks(plans.size(), 1, [&](std::size_t s, std::size_t) {
+    plans[s] = plan_stretch(from, grid, cells.crowd, members(s));
+  });
+  std::vector<std::size_t> first(starts.size());
+  for (std::size_t s = 0; s < plans.size(); ++s) first[s + 1] = first[s] + plans[s].voxels;
+  UnsetArray<Voxel> to(first.back());
+  parallel_blocks(plans.size(), 1, [&](std::size_t s, std::size_t) {
+    merge_stretch(from, plans[s], members(s), to.data() + first[s]);
+  });
+  return to;
+}
+
+MergeForecast forecast_merge(std::span<const Voxel> from, const MergeCells& cells) {
+  constexpr std::size_t kStretch = 1 << 14, kStep = 16 * kStretch;
+  const Grid grid(from, cells);
+  std::vector<ForecastSums> stretches((from.size() + kStep - 1) / kStep);
+  parallel_blocks(from.size(), kStep, [&](std::size_t begin, std::size_t end) {
+    const std::size_t last = std::min(end, begin + kStretch);
+    stretches[begin / kStep] = forecast_stretch(from, grid, cells.crowd, begin, last);
+  });
+  ForecastSums sums;
+  for (const ForecastSums& stretch : stretches) {
+    sums.points += stretch.points;
+    sums.merged += stretch.merged, sums.filling += stretch.filling;
+  }
+  if (sums.points == 0) return {};
+  return {.merged = sums.merged / sums.points, .filling = sums.filling / sums.points};
+}
+
+}  // namespace pcednet::gls
