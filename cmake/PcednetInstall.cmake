@@ -18,7 +18,7 @@ set(public_headers
   formats/read_cloud.h formats/write_cloud.h
   gls/features.h gls/reconstruction.h gls/scale_space_options.h
   io/coordinate_system.h io/drawing/drawing.h io/loaded_cloud.h io/write_options.h
-  lines/curve.h lines/find_lines.h
+  lines/curves/curve.h lines/find_lines.h lines/points/edge_points.h
   nn/model.h nn/train.h)
 foreach(header ${public_headers})
   cmake_path(GET header PARENT_PATH folder)

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lines_arguments.h"
-#include "pcednet/lines/curve.h"
+#include "pcednet/lines/curves/curve.h"
 #include "pcednet/lines/find_lines.h"
 
 namespace pcednet::app {

@@ -1,4 +1,4 @@
-#include "pcednet/lines/bend.h"
+#include "pcednet/lines/creases/bend.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "pcednet/lines/bores.h"
+#include "pcednet/lines/pieces/bores.h"
 
 #include <gtest/gtest.h>
 

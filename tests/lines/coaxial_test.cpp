@@ -1,4 +1,4 @@
-#include "pcednet/lines/coaxial.h"
+#include "pcednet/lines/pieces/coaxial.h"
 
 #include <gtest/gtest.h>
 

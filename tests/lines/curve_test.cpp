@@ -1,4 +1,4 @@
-#include "pcednet/lines/curve.h"
+#include "pcednet/lines/curves/curve.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "pcednet/lines/cylinder_folds.h"
+#include "pcednet/lines/exact/cylinder_folds.h"
 
 #include <gtest/gtest.h>
 

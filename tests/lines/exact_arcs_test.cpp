@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "exact_parts.h"
-#include "pcednet/lines/curve.h"
+#include "pcednet/lines/curves/curve.h"
 
 namespace pcednet::lines {
 namespace {

@@ -1,4 +1,4 @@
-#include "pcednet/lines/exact_edges.h"
+#include "pcednet/lines/exact/edges.h"
 
 #include <gtest/gtest.h>
 

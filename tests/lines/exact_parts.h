@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "made_clouds.h"
-#include "pcednet/lines/exact_edges.h"
+#include "pcednet/lines/exact/edges.h"
 
 namespace pcednet::lines {
 

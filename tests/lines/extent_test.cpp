@@ -1,4 +1,4 @@
-#include "pcednet/lines/extent.h"
+#include "pcednet/lines/pieces/extent.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "lines/made_pieces.h"
 #include "pcednet/core/random.h"
-#include "pcednet/lines/ordered_points.h"
+#include "pcednet/lines/points/ordered_points.h"
 
 namespace pcednet::lines {
 namespace {

@@ -1,4 +1,4 @@
-#include "pcednet/lines/fillet.h"
+#include "pcednet/lines/exact/fillet.h"
 
 #include <gtest/gtest.h>
 

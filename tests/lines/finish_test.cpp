@@ -1,4 +1,4 @@
-#include "pcednet/lines/finish.h"
+#include "pcednet/lines/pieces/finish.h"
 
 #include <gtest/gtest.h>
 

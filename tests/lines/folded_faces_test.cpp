@@ -1,4 +1,4 @@
-#include "pcednet/lines/folded_faces.h"
+#include "pcednet/lines/roofs/folded_faces.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "pcednet/lines/ordered_points.h"
-#include "pcednet/lines/piece.h"
+#include "pcednet/lines/pieces/piece.h"
+#include "pcednet/lines/points/ordered_points.h"
 
 namespace pcednet::lines {
 

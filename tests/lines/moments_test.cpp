@@ -1,4 +1,4 @@
-#include "pcednet/lines/moments.h"
+#include "pcednet/lines/points/moments.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "pcednet/lines/noisy_wedge.h"
+#include "pcednet/lines/creases/noisy_wedge.h"
 
 #include <gtest/gtest.h>
 

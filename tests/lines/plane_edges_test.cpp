@@ -1,4 +1,4 @@
-#include "pcednet/lines/plane_edges.h"
+#include "pcednet/lines/roofs/plane_edges.h"
 
 #include <gtest/gtest.h>
 
@@ -13,11 +13,11 @@
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random_vectors.h"
-#include "pcednet/lines/faces.h"
+#include "pcednet/lines/curves/support_line.h"
 #include "pcednet/lines/find_lines.h"
-#include "pcednet/lines/ordered_points.h"
-#include "pcednet/lines/outline.h"
-#include "pcednet/lines/support_line.h"
+#include "pcednet/lines/points/ordered_points.h"
+#include "pcednet/lines/roofs/faces.h"
+#include "pcednet/lines/roofs/outline.h"
 #include "support/expect_error.h"
 
 namespace pcednet::lines {

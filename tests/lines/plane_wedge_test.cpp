@@ -1,4 +1,4 @@
-#include "pcednet/lines/plane_wedge.h"
+#include "pcednet/lines/creases/plane_wedge.h"
 
 #include <gtest/gtest.h>
 

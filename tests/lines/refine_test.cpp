@@ -1,4 +1,4 @@
-#include "pcednet/lines/refine.h"
+#include "pcednet/lines/pieces/refine.h"
 
 #include <gtest/gtest.h>
 

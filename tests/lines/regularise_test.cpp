@@ -1,4 +1,4 @@
-#include "pcednet/lines/regularise.h"
+#include "pcednet/lines/pieces/regularise.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "lines/made_pieces.h"
-#include "pcednet/lines/finish.h"
+#include "pcednet/lines/pieces/finish.h"
 
 namespace pcednet::lines {
 namespace {

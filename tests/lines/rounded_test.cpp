@@ -5,7 +5,7 @@
 
 #include "made_clouds.h"
 #include "pcednet/core/random.h"
-#include "pcednet/lines/curve.h"
+#include "pcednet/lines/curves/curve.h"
 
 namespace pcednet::lines {
 namespace {

@@ -1,4 +1,4 @@
-#include "pcednet/lines/rounding.h"
+#include "pcednet/lines/pieces/rounding.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What is measured of points, and the creases beside them.
-#include "pcednet/lines/sampling.h"
+#include "pcednet/lines/points/sampling.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 
 #include "lines/made_clouds.h"
 #include "pcednet/core/random.h"
-#include "pcednet/lines/crease.h"
-#include "pcednet/lines/ordered_points.h"
+#include "pcednet/lines/creases/crease.h"
+#include "pcednet/lines/points/ordered_points.h"
 
 namespace pcednet::lines {
 namespace {

@@ -1,5 +1,5 @@
 // Curves that continue each other in a corner of two become one.
-#include "pcednet/lines/smooth_joints.h"
+#include "pcednet/lines/pieces/smooth_joints.h"
 
 #include <gtest/gtest.h>
 

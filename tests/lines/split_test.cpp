@@ -1,4 +1,4 @@
-#include "pcednet/lines/split.h"
+#include "pcednet/lines/curves/split.h"
 
 #include <gtest/gtest.h>
 

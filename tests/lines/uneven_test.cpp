@@ -6,8 +6,8 @@
 
 #include "pcednet/core/random.h"
 #include "pcednet/lines/find_lines.h"
-#include "pcednet/lines/ordered_points.h"
-#include "pcednet/lines/sampling.h"
+#include "pcednet/lines/points/ordered_points.h"
+#include "pcednet/lines/points/sampling.h"
 #include "support/scanned_ground.h"
 
 namespace pcednet::lines {

@@ -1,4 +1,4 @@
-#include "pcednet/lines/virtual_edges.h"
+#include "pcednet/lines/pieces/virtual_edges.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pcednet/core/vec3.h"
-#include "pcednet/lines/curve.h"
+#include "pcednet/lines/curves/curve.h"
 
 namespace pcednet::eval {
 

@@ -2,13 +2,13 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "pcednet/core/progress.h"
-#include "pcednet/lines/curve.h"
+#include "pcednet/lines/curves/curve.h"
+#include "pcednet/lines/points/edge_points.h"
 
 namespace pcednet::lines {
 
@@ -36,27 +36,6 @@ struct LineOptions {
   bool regularise = false;  ///< makes nearly parallel and nearly orthogonal segments exactly so
   bool boundaries = false;  ///< also lines where the sampled surface ends
   LineStage stage = LineStage::kCurves;  ///< the step whose curves are returned
-};
-
-/// The points and their attributes, in any order. The spans have equal length but for `curve`; the
-/// probabilities may be empty.
-struct EdgePoints {
-  std::span<const Vec3> positions;
-  /// Unit, or (0,0,0). Signs, in or out, do not matter, but where those of neighbours agree they
-  /// tell the sides of thin walls apart in noise.
-  std::span<const Vec3> normals;
-  std::span<const std::uint8_t> classes;  ///< EdgeClass
-  /// Where the class contradicts both together, as after a correction, it counts alone: a non-edge
-  /// beyond one half, an edge below a tenth.
-  std::span<const float> p_sharp = {};
-  std::span<const float> p_smooth = {};
-  /// Not 0 where points around it are missing: no boundary is found there. May be empty.
-  std::span<const std::uint8_t> partial = {};
-  /// Where the scanner that saw the point stood, NaN where unknown: the ends of what other things
-  /// hide from it are no boundaries. May be empty.
-  std::span<const Vec3> scanners = {};
-  /// As in detect::PreparedCloud, of all points with a finite position; empty if not known.
-  std::span<const std::uint32_t> curve = {};
 };
 
 /// What was measured of the cloud, what lengths the options came to, in its unit, and what these

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "pcednet/lines/curve.h"
+#include "pcednet/lines/curves/curve.h"
 #include "workbench/annotate/scene.h"
 
 namespace pcednet::annotate {

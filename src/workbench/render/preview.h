@@ -9,7 +9,7 @@
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/output_file.h"
 #include "pcednet/core/vec3.h"
-#include "pcednet/lines/curve.h"
+#include "pcednet/lines/curves/curve.h"
 
 namespace pcednet::render {
 

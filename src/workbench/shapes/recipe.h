@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pcednet/cloud/point_cloud.h"
-#include "pcednet/lines/curve.h"
+#include "pcednet/lines/curves/curve.h"
 #include "workbench/shapes/shape.h"
 
 namespace pcednet::shapes {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "pcednet/core/random.h"
-#include "pcednet/lines/curve.h"
+#include "pcednet/lines/curves/curve.h"
 #include "workbench/shapes/polyhedra.h"
 
 namespace pcednet::shapes {

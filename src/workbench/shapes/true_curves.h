@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "pcednet/lines/curve.h"
+#include "pcednet/lines/curves/curve.h"
 #include "workbench/shapes/shape.h"
 #include "workbench/shapes/solid_samples.h"
 

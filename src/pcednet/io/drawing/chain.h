@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "pcednet/lines/curve.h"
+#include "pcednet/lines/curves/curve.h"
 
 namespace pcednet::io {
 

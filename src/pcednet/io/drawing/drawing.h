@@ -11,7 +11,7 @@
 
 #include "pcednet/core/output_file.h"
 #include "pcednet/io/coordinate_system.h"
-#include "pcednet/lines/curve.h"
+#include "pcednet/lines/curves/curve.h"
 
 namespace pcednet::io {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "pcednet/io/input_file.h"
-#include "pcednet/lines/curve.h"
+#include "pcednet/lines/curves/curve.h"
 
 namespace pcednet::io {
 
