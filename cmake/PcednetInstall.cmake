@@ -13,7 +13,7 @@ set(public_headers
   pcednet.h
   cloud/attribute.h cloud/class_table.h cloud/point_cloud.h
   core/error.h core/output_file.h core/parallel.h core/progress.h core/vec3.h
-  detect/averages.h detect/boundary.h detect/classify.h detect/model.h detect/prepare.h
+  detect/averages.h detect/boundary.h detect/classify.h detect/model.h detect/points/prepare.h
   detect/result_cloud.h detect/train.h
   formats/read_cloud.h formats/write_cloud.h
   gls/features.h gls/reconstruction.h gls/scale_space_options.h

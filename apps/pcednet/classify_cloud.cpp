@@ -11,7 +11,7 @@
 #include "pcednet/detect/averages.h"
 #include "pcednet/detect/boundary.h"
 #include "pcednet/detect/estimates.h"
-#include "pcednet/detect/rounding.h"
+#include "pcednet/detect/points/rounding.h"
 #include "pcednet/formats/cloud_facts.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/io/faces.h"

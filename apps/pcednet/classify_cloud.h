@@ -8,7 +8,7 @@
 #include "methods.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/model.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/gls/scale_space_options.h"
 
 namespace pcednet::app {

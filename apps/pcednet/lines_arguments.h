@@ -8,7 +8,7 @@
 
 #include "las_codes.h"
 #include "models.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/io/coordinate_system.h"
 #include "pcednet/io/drawing/drawing.h"
 #include "pcednet/lines/find_lines.h"

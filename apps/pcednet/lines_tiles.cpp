@@ -11,7 +11,7 @@
 #include "pcednet/cloud/class_table.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/averages.h"
-#include "pcednet/detect/thinned_cloud.h"
+#include "pcednet/detect/points/thinned_cloud.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/morton.h"
 #include "pcednet/tiles/inputs.h"

@@ -8,7 +8,7 @@
 
 #include "number_options.h"
 #include "pcednet/core/error.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/io/promote.h"
 #include "pcednet/io/text_scan.h"
 #include "workbench/shapes/perturb.h"

@@ -11,7 +11,7 @@
 
 #include "models.h"
 #include "pcednet/detect/classify.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/io/parts.h"
 #include "pcednet/io/write_options.h"
 #include "pcednet/tiles/label_points.h"

@@ -14,7 +14,7 @@
 #include "bindings.h"
 #include "job.h"
 #include "pcednet/core/error.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/detect/result_truth.h"
 #include "pcednet/formats/labels.h"

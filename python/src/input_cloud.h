@@ -2,7 +2,7 @@
 
 #include "arrays.h"
 #include "job.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 
 namespace pcednet::python {
 

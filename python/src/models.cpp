@@ -8,7 +8,7 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/cloud_kind.h"
-#include "pcednet/detect/rounding.h"
+#include "pcednet/detect/points/rounding.h"
 #include "pcednet/formats/cloud_facts.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/nn/model_file.h"

@@ -7,7 +7,7 @@
 
 #include "pcednet/core/vec3.h"
 #include "pcednet/detect/model.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/gls/scale_space_options.h"
 
 namespace pcednet::python {

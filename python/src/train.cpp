@@ -10,7 +10,7 @@
 #include "models.h"
 #include "named.h"
 #include "pcednet/core/error.h"
-#include "pcednet/detect/rounding.h"
+#include "pcednet/detect/points/rounding.h"
 #include "text.h"
 #include "workbench/annotate/adapt.h"
 

@@ -31,7 +31,7 @@
 #include "pcednet/detect/boundary.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/model.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/detect/train.h"
 #include "pcednet/lines/find_lines.h"

@@ -5,7 +5,7 @@
 #include "detect/labelled_cube.h"
 #include "pcednet/detect/averages.h"
 #include "pcednet/detect/classify.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/detect/result_cloud.h"
 
 namespace pcednet::detect {

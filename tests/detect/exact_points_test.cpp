@@ -1,4 +1,4 @@
-#include "pcednet/detect/exact_points.h"
+#include "pcednet/detect/points/exact_points.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "labelled_cube.h"
 #include "pcednet/core/random.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 
 namespace pcednet::detect {
 namespace {

@@ -1,4 +1,4 @@
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "pcednet/detect/rounding.h"
+#include "pcednet/detect/points/rounding.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {

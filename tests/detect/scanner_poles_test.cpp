@@ -1,4 +1,4 @@
-#include "pcednet/detect/scanner_poles.h"
+#include "pcednet/detect/points/scanner_poles.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "pcednet/core/random_vectors.h"
 #include "pcednet/detect/averages.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 
 namespace pcednet::detect {
 namespace {

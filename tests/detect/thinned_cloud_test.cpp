@@ -1,4 +1,4 @@
-#include "pcednet/detect/thinned_cloud.h"
+#include "pcednet/detect/points/thinned_cloud.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include "commands.h"
 #include "number_options.h"
 #include "pcednet/core/error.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/write_cloud.h"
 #include "pcednet/normals/neighbour_count.h"

@@ -15,7 +15,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/piece.h"
-#include "pcednet/detect/rounding.h"
+#include "pcednet/detect/points/rounding.h"
 #include "pcednet/detect/train.h"
 #include "pcednet/io/text_scan.h"
 #include "stage_clock.h"

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-#include "pcednet/detect/distinct_points.h"
+#include "pcednet/detect/points/distinct_points.h"
 #include "pcednet/detect/spread.h"
 #include "pcednet/gls/engine/scale_space.h"
 #include "pcednet/spatial/neighbour_search.h"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "pcednet/detect/classify.h"
@@ -13,13 +11,6 @@ namespace pcednet::detect {
 // points, which are fewer: classify() and find_boundary() are about these, and each point of the
 // cloud has what was found of its average. In the same way points stand for those that crowd around
 // them at the poles of a scanner whose place is known.
-
-/// In PreparedCloud::average_of: the point has no finite position.
-inline constexpr std::uint32_t kNoAverage = std::numeric_limits<std::uint32_t>::max();
-
-/// In deviations of the noise, along each axis: an average is not farther from its points, nor from
-/// those that affect it.
-inline constexpr double kAveragingReach = 7.5;
 
 /// Whether thick noise is averaged before this model classifies. A model without experts knows the
 /// points as they are from its training, and so do those who give s_min.

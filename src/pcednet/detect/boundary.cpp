@@ -14,7 +14,7 @@
 #include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/detect/decide.h"
-#include "pcednet/detect/distinct_points.h"
+#include "pcednet/detect/points/distinct_points.h"
 #include "pcednet/detect/spread.h"
 #include "pcednet/spatial/neighbour_search.h"
 #include "pcednet/spatial/opening.h"

@@ -6,7 +6,7 @@
 
 #include "pcednet/core/progress.h"
 #include "pcednet/detect/classify.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 
 namespace pcednet::detect {
 

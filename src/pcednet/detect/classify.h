@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pcednet/detect/model.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 
 namespace pcednet::detect {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "pcednet/detect/model.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 
 namespace pcednet::detect {
 

@@ -8,7 +8,7 @@
 #include "pcednet/detect/acute_edge.h"
 #include "pcednet/detect/classify.h"
 #include "pcednet/detect/cloud_kind.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/gls/engine/scale_space.h"
 
 namespace pcednet::detect {

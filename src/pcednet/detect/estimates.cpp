@@ -6,7 +6,7 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/averages.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/detect/result_truth.h"
 
 namespace pcednet::detect {

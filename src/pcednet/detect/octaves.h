@@ -7,7 +7,7 @@
 
 #include "pcednet/core/progress.h"
 #include "pcednet/core/vec3.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/gls/engine/scale_space.h"
 
 namespace pcednet::detect {

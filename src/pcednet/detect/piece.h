@@ -2,7 +2,7 @@
 
 #include "pcednet/detect/describe.h"
 #include "pcednet/detect/model.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 
 namespace pcednet::detect {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "pcednet/detect/model.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/nn/train.h"
 
 namespace pcednet::detect {

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "pcednet/core/error.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/io/las/file.h"
 #include "pcednet/io/scanners.h"
 #include "pcednet/tiles/las_meaning.h"

@@ -5,7 +5,7 @@
 
 #include "pcednet/core/progress.h"
 #include "pcednet/detect/model.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/tiles/plan.h"
 #include "pcednet/tiles/sample.h"
 

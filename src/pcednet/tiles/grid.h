@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "pcednet/cloud/bounding_box.h"
-#include "pcednet/detect/far_points.h"
+#include "pcednet/detect/points/far_points.h"
 
 namespace pcednet::tiles {
 

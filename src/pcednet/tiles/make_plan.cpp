@@ -12,7 +12,7 @@
 #include "pcednet/detect/boundary.h"
 #include "pcednet/detect/context.h"
 #include "pcednet/detect/piece.h"
-#include "pcednet/detect/rounding.h"
+#include "pcednet/detect/points/rounding.h"
 #include "pcednet/formats/cloud_facts.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/normals/exact_planes.h"

@@ -9,7 +9,7 @@
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/output_file.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/gls/pyramid_plan.h"
 #include "pcednet/tiles/grid.h"
 

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "pcednet/core/random.h"
-#include "pcednet/detect/rounding.h"
+#include "pcednet/detect/points/rounding.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/kd_tree.h"
 #include "pcednet/tiles/inputs.h"

@@ -6,7 +6,7 @@
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/detect/boundary.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "workbench/annotate/described.h"
 #include "workbench/annotate/file_classes.h"
 #include "workbench/annotate/layout.h"

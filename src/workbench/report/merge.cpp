@@ -7,7 +7,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/json.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/formats/file_name.h"
 #include "pcednet/formats/labels.h"
 #include "pcednet/io/input_file.h"

@@ -9,7 +9,7 @@
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/json.h"
 #include "pcednet/core/progress.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 
 namespace pcednet::report {
 

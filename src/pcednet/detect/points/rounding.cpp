@@ -1,4 +1,4 @@
-#include "pcednet/detect/rounding.h"
+#include "pcednet/detect/points/rounding.h"
 
 #include <fmt/format.h>
 
@@ -12,8 +12,8 @@
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel_loops.h"
 #include "pcednet/core/random.h"
-#include "pcednet/detect/exact_points.h"
-#include "pcednet/detect/near_on_curve.h"
+#include "pcednet/detect/points/exact_points.h"
+#include "pcednet/detect/points/near_on_curve.h"
 #include "pcednet/gls/scales.h"
 #include "pcednet/normals/plane_fit.h"
 #include "pcednet/spatial/curve_order.h"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "pcednet/core/progress.h"
-#include "pcednet/detect/prepare.h"
-#include "pcednet/detect/thick_noise.h"
+#include "pcednet/detect/points/prepare.h"
+#include "pcednet/detect/points/thick_noise.h"
 
 namespace pcednet::detect {
 

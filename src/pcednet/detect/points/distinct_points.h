@@ -4,7 +4,7 @@
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/half_space.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/spatial/places.h"
 
 namespace pcednet::detect {

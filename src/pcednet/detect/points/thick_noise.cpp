@@ -1,4 +1,4 @@
-#include "pcednet/detect/thick_noise.h"
+#include "pcednet/detect/points/thick_noise.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "pcednet/core/eigendecomposition.h"
 #include "pcednet/core/median.h"
 #include "pcednet/core/parallel.h"
-#include "pcednet/detect/near_on_curve.h"
+#include "pcednet/detect/points/near_on_curve.h"
 #include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {

@@ -1,10 +1,10 @@
-#include "pcednet/detect/exact_points.h"
+#include "pcednet/detect/points/exact_points.h"
 
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <vector>
 
-#include "pcednet/detect/near_on_curve.h"
+#include "pcednet/detect/points/near_on_curve.h"
 #include "pcednet/normals/exact_planes.h"
 #include "pcednet/normals/plane_fit.h"
 

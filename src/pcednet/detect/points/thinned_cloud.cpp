@@ -1,4 +1,4 @@
-#include "pcednet/detect/thinned_cloud.h"
+#include "pcednet/detect/points/thinned_cloud.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,7 @@
 #include <tuple>
 
 #include "pcednet/core/parallel.h"
-#include "pcednet/detect/averages.h"
-#include "pcednet/detect/far_points.h"
+#include "pcednet/detect/points/far_points.h"
 #include "pcednet/spatial/curve_order.h"
 #include "pcednet/spatial/kd_tree.h"
 

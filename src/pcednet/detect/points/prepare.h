@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,6 +26,13 @@ struct Averaging {
   double deviation = 0.0;      ///< of the noise; 0: the points are described as they are
   Vec3 middle = Vec3::Zero();  ///< a corner of the voxels
 };
+
+/// In deviations of the noise, along each axis: an average is not farther from its points, nor from
+/// those that affect it.
+inline constexpr double kAveragingReach = 7.5;
+
+/// In PreparedCloud::average_of: the point has no finite position.
+inline constexpr std::uint32_t kNoAverage = std::numeric_limits<std::uint32_t>::max();
 
 /// The decisions on normals that depend on all points of a cloud.
 struct NormalsDecision {

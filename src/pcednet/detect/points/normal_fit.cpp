@@ -1,10 +1,10 @@
-#include "pcednet/detect/normal_fit.h"
+#include "pcednet/detect/points/normal_fit.h"
 
 #include <cmath>
 #include <vector>
 
 #include "pcednet/cloud/point_cloud.h"
-#include "pcednet/detect/near_on_curve.h"
+#include "pcednet/detect/points/near_on_curve.h"
 #include "pcednet/normals/plane_fit.h"
 
 namespace pcednet::detect {

@@ -1,4 +1,4 @@
-#include "pcednet/detect/scanner_poles.h"
+#include "pcednet/detect/points/scanner_poles.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <map>
 
 #include "pcednet/core/median.h"
-#include "pcednet/detect/averages.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/spatial/kd_tree.h"
 
 namespace pcednet::detect {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pcednet/core/vec3.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 #include "pcednet/gls/scale_space_options.h"
 
 namespace pcednet::detect {

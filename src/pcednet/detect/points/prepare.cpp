@@ -1,4 +1,4 @@
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 
 #include <fmt/format.h>
 
@@ -9,11 +9,11 @@
 #include "pcednet/core/error.h"
 #include "pcednet/core/half_space.h"
 #include "pcednet/core/parallel_loops.h"
-#include "pcednet/detect/exact_points.h"
-#include "pcednet/detect/near_on_curve.h"
-#include "pcednet/detect/normal_fit.h"
-#include "pcednet/detect/points_used.h"
-#include "pcednet/detect/rounding.h"
+#include "pcednet/detect/points/exact_points.h"
+#include "pcednet/detect/points/near_on_curve.h"
+#include "pcednet/detect/points/normal_fit.h"
+#include "pcednet/detect/points/points_used.h"
+#include "pcednet/detect/points/rounding.h"
 #include "pcednet/normals/flat_pairs.h"
 #include "pcednet/normals/neighbour_count.h"
 #include "pcednet/normals/prepare.h"

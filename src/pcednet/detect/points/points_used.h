@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pcednet/core/progress.h"
-#include "pcednet/detect/prepare.h"
+#include "pcednet/detect/points/prepare.h"
 
 namespace pcednet::detect {
 

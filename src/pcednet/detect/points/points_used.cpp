@@ -1,4 +1,4 @@
-#include "pcednet/detect/points_used.h"
+#include "pcednet/detect/points/points_used.h"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "pcednet/core/error.h"
-#include "pcednet/detect/far_points.h"
-#include "pcednet/detect/rounding.h"
-#include "pcednet/detect/scanner_poles.h"
-#include "pcednet/detect/thinned_cloud.h"
+#include "pcednet/detect/points/far_points.h"
+#include "pcednet/detect/points/rounding.h"
+#include "pcednet/detect/points/scanner_poles.h"
+#include "pcednet/detect/points/thinned_cloud.h"
 #include "pcednet/spatial/curve_order.h"
 
 namespace pcednet::detect {

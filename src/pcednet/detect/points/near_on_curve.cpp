@@ -1,4 +1,4 @@
-#include "pcednet/detect/near_on_curve.h"
+#include "pcednet/detect/points/near_on_curve.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "pcednet/detect/far_points.h"
+#include "pcednet/detect/points/far_points.h"
 
 #include <fmt/format.h>
 
