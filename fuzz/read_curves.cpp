@@ -1,7 +1,7 @@
 #include "pcednet/io/drawing/read_curves.h"
 #include "in_memory.h"
 #include "pcednet/core/error.h"
-#include "pcednet/io/ply.h"
+#include "pcednet/io/ply/ply.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return pcednet::fuzz::read_or_refuse({data, size}, [](const std::filesystem::path& path) {

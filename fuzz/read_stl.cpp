@@ -1,5 +1,5 @@
 #include "in_memory.h"
-#include "pcednet/io/stl.h"
+#include "pcednet/io/mesh/stl.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return pcednet::fuzz::read_or_refuse({data, size}, [](const std::filesystem::path& path) {

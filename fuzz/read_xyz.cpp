@@ -1,5 +1,5 @@
 #include "in_memory.h"
-#include "pcednet/io/xyz.h"
+#include "pcednet/io/text/xyz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return pcednet::fuzz::read_or_refuse({data, size}, [](const std::filesystem::path& path) {

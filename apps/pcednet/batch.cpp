@@ -13,8 +13,8 @@
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/virtual_cloud.h"
 #include "pcednet/io/las/facts.h"
+#include "pcednet/io/text/xyz.h"
 #include "pcednet/io/text_scan.h"
-#include "pcednet/io/xyz.h"
 
 namespace pcednet::app {
 namespace {

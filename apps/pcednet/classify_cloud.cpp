@@ -14,8 +14,8 @@
 #include "pcednet/detect/points/rounding.h"
 #include "pcednet/formats/cloud_facts.h"
 #include "pcednet/formats/read_cloud.h"
-#include "pcednet/io/faces.h"
 #include "pcednet/io/las/facts.h"
+#include "pcednet/io/ply/faces.h"
 
 namespace pcednet::app {
 

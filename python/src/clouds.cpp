@@ -20,8 +20,8 @@
 #include "pcednet/formats/labels.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/formats/write_cloud.h"
-#include "pcednet/io/faces.h"
 #include "pcednet/io/las/file.h"
+#include "pcednet/io/ply/faces.h"
 #include "text.h"
 #include "workbench/shapes/mesh_samples.h"
 

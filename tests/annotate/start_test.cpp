@@ -10,7 +10,7 @@
 #include "pcednet/core/random_vectors.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/formats/write_cloud.h"
-#include "pcednet/io/faces.h"
+#include "pcednet/io/ply/faces.h"
 #include "support/expect_error.h"
 #include "support/own_folder.h"
 #include "workbench/annotate/known_files.h"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "io/scratch.h"
-#include "pcednet/io/number_table.h"
+#include "pcednet/io/text/number_table.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "io/scratch.h"
-#include "pcednet/io/faces.h"
+#include "pcednet/io/ply/faces.h"
 
 namespace pcednet::io {
 namespace {

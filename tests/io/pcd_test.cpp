@@ -5,7 +5,7 @@
 #include "io/sample_cloud.h"
 #include "io/scratch.h"
 #include "pcednet/formats/write_cloud.h"
-#include "pcednet/io/lzf.h"
+#include "pcednet/io/pcd/lzf.h"
 
 namespace pcednet::io {
 namespace {

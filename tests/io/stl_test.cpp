@@ -5,7 +5,7 @@
 
 #include "io/scratch.h"
 #include "pcednet/formats/write_cloud.h"
-#include "pcednet/io/faces.h"
+#include "pcednet/io/ply/faces.h"
 
 namespace pcednet::io {
 namespace {

@@ -5,8 +5,8 @@
 #include "io/sample_cloud.h"
 #include "io/scratch.h"
 #include "pcednet/formats/write_cloud.h"
-#include "pcednet/io/xyz.h"
-#include "pcednet/io/xyz_fields.h"
+#include "pcednet/io/text/xyz.h"
+#include "pcednet/io/text/xyz_fields.h"
 
 namespace pcednet::io {
 namespace {

@@ -13,7 +13,7 @@
 #include "pcednet/formats/cloud_facts.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/gls/scales.h"
-#include "pcednet/io/faces.h"
+#include "pcednet/io/ply/faces.h"
 #include "pcednet/spatial/curve_order.h"
 #include "workbench/annotate/not_found.h"
 

@@ -9,10 +9,10 @@
 
 #include "pcednet/io/drawing/chain.h"
 #include "pcednet/io/drawing/line_classes.h"
-#include "pcednet/io/obj_statements.h"
-#include "pcednet/io/ply.h"
-#include "pcednet/io/ply_header.h"
-#include "pcednet/io/ply_rows.h"
+#include "pcednet/io/mesh/obj_statements.h"
+#include "pcednet/io/ply/header.h"
+#include "pcednet/io/ply/ply.h"
+#include "pcednet/io/ply/rows.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {

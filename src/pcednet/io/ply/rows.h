@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "pcednet/io/ply_header.h"
+#include "pcednet/io/ply/header.h"
 
 namespace pcednet::io {
 

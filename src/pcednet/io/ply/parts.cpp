@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <set>
 
-#include "pcednet/io/ply.h"
-#include "pcednet/io/ply_body.h"
+#include "pcednet/io/ply/body.h"
+#include "pcednet/io/ply/ply.h"
 #include "pcednet/io/promote.h"
 #include "pcednet/io/scanners.h"
 #include "pcednet/io/text_scan.h"

@@ -1,4 +1,4 @@
-#include "pcednet/io/xyz_table.h"
+#include "pcednet/io/text/xyz_table.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

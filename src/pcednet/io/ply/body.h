@@ -8,7 +8,7 @@
 
 #include "pcednet/io/cloud_builder.h"
 #include "pcednet/io/input_file.h"
-#include "pcednet/io/ply_header.h"
+#include "pcednet/io/ply/header.h"
 
 namespace pcednet::io {
 

@@ -1,4 +1,4 @@
-#include "pcednet/io/obj_statements.h"
+#include "pcednet/io/mesh/obj_statements.h"
 
 #include <fmt/format.h>
 

@@ -7,10 +7,10 @@
 #include "pcednet/io/promote.h"
 #include "pcednet/io/row_feeder.h"
 #include "pcednet/io/scanners.h"
+#include "pcednet/io/text/xyz.h"
+#include "pcednet/io/text/xyz_fields.h"
+#include "pcednet/io/text/xyz_table.h"
 #include "pcednet/io/text_scan.h"
-#include "pcednet/io/xyz.h"
-#include "pcednet/io/xyz_fields.h"
-#include "pcednet/io/xyz_table.h"
 
 namespace pcednet::io {
 namespace {

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "pcednet/io/cloud_columns.h"
-#include "pcednet/io/pcd.h"
+#include "pcednet/io/pcd/pcd.h"
 #include "pcednet/io/text_scan.h"
 #include "pcednet/io/write_blocks.h"
 

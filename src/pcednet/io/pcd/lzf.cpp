@@ -1,4 +1,4 @@
-#include "pcednet/io/lzf.h"
+#include "pcednet/io/pcd/lzf.h"
 
 #include <algorithm>
 

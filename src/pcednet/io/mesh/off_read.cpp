@@ -4,9 +4,9 @@
 #include <array>
 #include <utility>
 
-#include "pcednet/io/faces.h"
 #include "pcednet/io/file_lines.h"
-#include "pcednet/io/off.h"
+#include "pcednet/io/mesh/off.h"
+#include "pcednet/io/ply/faces.h"
 #include "pcednet/io/promote.h"
 #include "pcednet/io/text_scan.h"
 

@@ -1,4 +1,4 @@
-#include "pcednet/io/faces.h"
+#include "pcednet/io/ply/faces.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "pcednet/core/error.h"
-#include "pcednet/io/ply_header.h"
+#include "pcednet/io/ply/header.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {

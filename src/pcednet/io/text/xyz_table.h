@@ -11,8 +11,8 @@
 #include "pcednet/io/cloud_builder.h"
 #include "pcednet/io/file_lines.h"
 #include "pcednet/io/input_file.h"
-#include "pcednet/io/number_table.h"
-#include "pcednet/io/xyz_fields.h"
+#include "pcednet/io/text/number_table.h"
+#include "pcednet/io/text/xyz_fields.h"
 
 namespace pcednet::io {
 

@@ -1,4 +1,4 @@
-#include "pcednet/io/xyz_fields.h"
+#include "pcednet/io/text/xyz_fields.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #include <fmt/ranges.h>
 
 #include "pcednet/io/cloud_columns.h"
-#include "pcednet/io/obj.h"
+#include "pcednet/io/mesh/obj.h"
 #include "pcednet/io/text_scan.h"
 #include "pcednet/io/write_blocks.h"
 

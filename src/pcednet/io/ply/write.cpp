@@ -5,9 +5,9 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/io/cloud_columns.h"
-#include "pcednet/io/ply.h"
-#include "pcednet/io/ply_header.h"
-#include "pcednet/io/ply_rows.h"
+#include "pcednet/io/ply/header.h"
+#include "pcednet/io/ply/ply.h"
+#include "pcednet/io/ply/rows.h"
 #include "pcednet/io/text_scan.h"
 #include "pcednet/io/write_blocks.h"
 

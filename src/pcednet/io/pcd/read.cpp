@@ -7,9 +7,9 @@
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/io/cloud_builder.h"
-#include "pcednet/io/lzf.h"
-#include "pcednet/io/pcd.h"
-#include "pcednet/io/pcd_header.h"
+#include "pcednet/io/pcd/header.h"
+#include "pcednet/io/pcd/lzf.h"
+#include "pcednet/io/pcd/pcd.h"
 #include "pcednet/io/promote.h"
 #include "pcednet/io/row_feeder.h"
 #include "pcednet/io/text_scan.h"

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <utility>
 
-#include "pcednet/io/faces.h"
-#include "pcednet/io/stl.h"
+#include "pcednet/io/mesh/stl.h"
+#include "pcednet/io/ply/faces.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {

@@ -6,9 +6,9 @@
 #include <iterator>
 #include <utility>
 
-#include "pcednet/io/faces.h"
-#include "pcednet/io/obj.h"
-#include "pcednet/io/obj_statements.h"
+#include "pcednet/io/mesh/obj.h"
+#include "pcednet/io/mesh/obj_statements.h"
+#include "pcednet/io/ply/faces.h"
 #include "pcednet/io/promote.h"
 
 namespace pcednet::io {

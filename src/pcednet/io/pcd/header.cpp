@@ -1,11 +1,11 @@
-#include "pcednet/io/pcd_header.h"
+#include "pcednet/io/pcd/header.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
 
-#include "pcednet/io/pcd.h"
+#include "pcednet/io/pcd/pcd.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {

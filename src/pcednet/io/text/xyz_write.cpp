@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "pcednet/io/cloud_columns.h"
+#include "pcednet/io/text/xyz.h"
+#include "pcednet/io/text/xyz_fields.h"
 #include "pcednet/io/text_scan.h"
 #include "pcednet/io/write_blocks.h"
-#include "pcednet/io/xyz.h"
-#include "pcednet/io/xyz_fields.h"
 
 namespace pcednet::io {
 namespace {

@@ -1,4 +1,4 @@
-#include "pcednet/io/ply_header.h"
+#include "pcednet/io/ply/header.h"
 
 #include <fmt/format.h>
 

@@ -7,9 +7,9 @@
 
 #include "pcednet/io/cloud_builder.h"
 #include "pcednet/io/file_lines.h"
-#include "pcednet/io/number_table.h"
-#include "pcednet/io/ptx.h"
 #include "pcednet/io/scanners.h"
+#include "pcednet/io/text/number_table.h"
+#include "pcednet/io/text/ptx.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {

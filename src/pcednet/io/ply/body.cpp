@@ -1,4 +1,4 @@
-#include "pcednet/io/ply_body.h"
+#include "pcednet/io/ply/body.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "pcednet/core/parallel.h"
-#include "pcednet/io/ply_rows.h"
+#include "pcednet/io/ply/rows.h"
 #include "pcednet/io/row_feeder.h"
 
 namespace pcednet::io {
