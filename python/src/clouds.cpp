@@ -23,7 +23,7 @@
 #include "pcednet/io/las/file.h"
 #include "pcednet/io/ply/faces.h"
 #include "text.h"
-#include "workbench/shapes/mesh_samples.h"
+#include "workbench/shapes/solids/mesh_samples.h"
 
 namespace pcednet::python {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/spatial/kd_tree.h"
-#include "workbench/shapes/part_pieces.h"
+#include "workbench/shapes/solids/part_pieces.h"
 #include "workbench/shapes/varied_set.h"
 
 namespace pcednet::shapes {

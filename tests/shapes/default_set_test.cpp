@@ -8,10 +8,10 @@
 #include "pcednet/core/random_vectors.h"
 #include "pcednet/spatial/kd_tree.h"
 #include "workbench/shapes/default_set.h"
-#include "workbench/shapes/patches.h"
-#include "workbench/shapes/polyhedra.h"
-#include "workbench/shapes/sampling.h"
-#include "workbench/shapes/shape.h"
+#include "workbench/shapes/surfaces/patches.h"
+#include "workbench/shapes/surfaces/polyhedra.h"
+#include "workbench/shapes/surfaces/sampling.h"
+#include "workbench/shapes/surfaces/shape.h"
 
 namespace pcednet::shapes {
 namespace {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "support/expect_error.h"
-#include "workbench/shapes/mesh_samples.h"
+#include "workbench/shapes/solids/mesh_samples.h"
 
 namespace pcednet::shapes {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "workbench/shapes/sampling.h"
+#include "workbench/shapes/surfaces/sampling.h"
 
 namespace pcednet::shapes {
 namespace {

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "pcednet/core/parallel.h"
-#include "workbench/shapes/part_pieces.h"
+#include "workbench/shapes/solids/part_pieces.h"
 
 namespace pcednet::shapes {
 namespace {

@@ -7,9 +7,9 @@
 #include "pcednet/core/random_vectors.h"
 #include "pcednet/spatial/kd_tree.h"
 #include "workbench/shapes/default_set.h"
-#include "workbench/shapes/default_shapes.h"
-#include "workbench/shapes/polyhedra.h"
-#include "workbench/shapes/sampling.h"
+#include "workbench/shapes/surfaces/default_shapes.h"
+#include "workbench/shapes/surfaces/polyhedra.h"
+#include "workbench/shapes/surfaces/sampling.h"
 
 namespace pcednet::shapes {
 namespace {

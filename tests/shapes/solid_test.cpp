@@ -1,4 +1,4 @@
-#include "workbench/shapes/solid.h"
+#include "workbench/shapes/solids/solid.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "pcednet/core/random.h"
-#include "workbench/shapes/cad_parts.h"
-#include "workbench/shapes/part_pieces.h"
-#include "workbench/shapes/solid_samples.h"
+#include "workbench/shapes/solids/cad_parts.h"
+#include "workbench/shapes/solids/part_pieces.h"
+#include "workbench/shapes/solids/solid_samples.h"
 
 namespace pcednet::shapes {
 namespace {

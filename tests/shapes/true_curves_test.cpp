@@ -6,11 +6,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "workbench/shapes/cad_parts.h"
-#include "workbench/shapes/mesh_vertices.h"
-#include "workbench/shapes/part_pieces.h"
-#include "workbench/shapes/polyhedra.h"
-#include "workbench/shapes/roofs.h"
+#include "workbench/shapes/solids/cad_parts.h"
+#include "workbench/shapes/solids/mesh_vertices.h"
+#include "workbench/shapes/solids/part_pieces.h"
+#include "workbench/shapes/surfaces/polyhedra.h"
+#include "workbench/shapes/surfaces/roofs.h"
 
 namespace pcednet::shapes {
 namespace {

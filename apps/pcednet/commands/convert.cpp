@@ -16,8 +16,8 @@
 #include "pcednet/io/parts.h"
 #include "pcednet/io/ply/faces.h"
 #include "point_filter.h"
-#include "workbench/shapes/mesh_samples.h"
 #include "workbench/shapes/perturb.h"
+#include "workbench/shapes/solids/mesh_samples.h"
 
 namespace pcednet::app {
 namespace {

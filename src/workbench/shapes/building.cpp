@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "workbench/shapes/polyhedra.h"
-#include "workbench/shapes/sampling.h"
+#include "workbench/shapes/surfaces/polyhedra.h"
+#include "workbench/shapes/surfaces/sampling.h"
 
 namespace pcednet::shapes {
 namespace {

@@ -8,9 +8,9 @@
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/random.h"
 #include "pcednet/spatial/kd_tree.h"
-#include "workbench/shapes/cad_parts.h"
-#include "workbench/shapes/part_pieces.h"
-#include "workbench/shapes/sampling.h"
+#include "workbench/shapes/solids/cad_parts.h"
+#include "workbench/shapes/solids/part_pieces.h"
+#include "workbench/shapes/surfaces/sampling.h"
 #include "workbench/shapes/true_curves.h"
 #include "workbench/shapes/wear.h"
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "pcednet/core/random.h"
-#include "workbench/shapes/mesh_vertices.h"
 #include "workbench/shapes/recipe.h"
-#include "workbench/shapes/shape.h"
+#include "workbench/shapes/solids/mesh_vertices.h"
+#include "workbench/shapes/surfaces/shape.h"
 
 namespace pcednet::shapes {
 

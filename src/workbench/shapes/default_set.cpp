@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "pcednet/core/random.h"
-#include "workbench/shapes/default_shapes.h"
-#include "workbench/shapes/polyhedra.h"
+#include "workbench/shapes/surfaces/default_shapes.h"
+#include "workbench/shapes/surfaces/polyhedra.h"
 
 namespace pcednet::shapes {
 namespace {

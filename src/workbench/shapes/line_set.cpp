@@ -6,13 +6,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "workbench/shapes/cad_parts.h"
 #include "workbench/shapes/cad_set.h"
-#include "workbench/shapes/roofs.h"
-#include "workbench/shapes/sampling.h"
-#include "workbench/shapes/scanner.h"
-#include "workbench/shapes/shape.h"
-#include "workbench/shapes/survey_roofs.h"
+#include "workbench/shapes/solids/cad_parts.h"
+#include "workbench/shapes/solids/scanner.h"
+#include "workbench/shapes/surfaces/roofs.h"
+#include "workbench/shapes/surfaces/sampling.h"
+#include "workbench/shapes/surfaces/shape.h"
+#include "workbench/shapes/surfaces/survey_roofs.h"
 #include "workbench/shapes/true_curves.h"
 #include "workbench/shapes/wear.h"
 

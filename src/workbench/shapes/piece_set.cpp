@@ -9,7 +9,7 @@
 
 #include "pcednet/cloud/class_table.h"
 #include "pcednet/core/random.h"
-#include "workbench/shapes/part_pieces.h"
+#include "workbench/shapes/solids/part_pieces.h"
 #include "workbench/shapes/varied_set.h"
 
 namespace pcednet::shapes {

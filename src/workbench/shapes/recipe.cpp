@@ -12,8 +12,8 @@
 #include "pcednet/core/random.h"
 #include "pcednet/core/random_vectors.h"
 #include "pcednet/normals/estimate.h"
-#include "workbench/shapes/sampling.h"
-#include "workbench/shapes/shape.h"
+#include "workbench/shapes/surfaces/sampling.h"
+#include "workbench/shapes/surfaces/shape.h"
 #include "workbench/shapes/true_curves.h"
 
 namespace pcednet::shapes {

@@ -7,7 +7,7 @@
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/lines/curves/curve.h"
-#include "workbench/shapes/shape.h"
+#include "workbench/shapes/surfaces/shape.h"
 
 namespace pcednet::shapes {
 

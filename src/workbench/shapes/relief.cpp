@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "pcednet/core/random.h"
-#include "workbench/shapes/patches.h"
-#include "workbench/shapes/shape.h"
+#include "workbench/shapes/surfaces/patches.h"
+#include "workbench/shapes/surfaces/shape.h"
 #include "workbench/shapes/wear.h"
 
 namespace pcednet::shapes {

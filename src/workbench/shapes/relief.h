@@ -6,7 +6,7 @@
 
 #include "pcednet/core/random.h"
 #include "workbench/shapes/recipe.h"
-#include "workbench/shapes/shape.h"
+#include "workbench/shapes/surfaces/shape.h"
 
 namespace pcednet::shapes {
 

@@ -10,7 +10,7 @@
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random.h"
 #include "pcednet/spatial/kd_tree.h"
-#include "workbench/shapes/sampling.h"
+#include "workbench/shapes/surfaces/sampling.h"
 #include "workbench/shapes/true_curves.h"
 
 namespace pcednet::shapes {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "workbench/shapes/recipe.h"
-#include "workbench/shapes/scanner.h"
+#include "workbench/shapes/solids/scanner.h"
 
 namespace pcednet::shapes {
 

@@ -9,9 +9,9 @@
 
 #include "pcednet/core/random_vectors.h"
 #include "workbench/shapes/cad_set.h"
-#include "workbench/shapes/part_pieces.h"
-#include "workbench/shapes/roofs.h"
-#include "workbench/shapes/sampling.h"
+#include "workbench/shapes/solids/part_pieces.h"
+#include "workbench/shapes/surfaces/roofs.h"
+#include "workbench/shapes/surfaces/sampling.h"
 
 namespace pcednet::shapes {
 namespace {

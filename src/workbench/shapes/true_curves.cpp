@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "pcednet/spatial/kd_tree.h"
-#include "workbench/shapes/edge_walk.h"
-#include "workbench/shapes/shape.h"
+#include "workbench/shapes/solids/edge_walk.h"
+#include "workbench/shapes/surfaces/shape.h"
 
 namespace pcednet::shapes {
 namespace {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "pcednet/lines/curves/curve.h"
-#include "workbench/shapes/shape.h"
-#include "workbench/shapes/solid_samples.h"
+#include "workbench/shapes/solids/solid_samples.h"
+#include "workbench/shapes/surfaces/shape.h"
 
 namespace pcednet::shapes {
 

@@ -6,9 +6,9 @@
 
 #include "pcednet/core/random.h"
 #include "workbench/shapes/default_set.h"
-#include "workbench/shapes/default_shapes.h"
-#include "workbench/shapes/part_pieces.h"
-#include "workbench/shapes/roofs.h"
+#include "workbench/shapes/solids/part_pieces.h"
+#include "workbench/shapes/surfaces/default_shapes.h"
+#include "workbench/shapes/surfaces/roofs.h"
 
 namespace pcednet::shapes {
 namespace {

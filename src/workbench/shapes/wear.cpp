@@ -7,8 +7,8 @@
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random_vectors.h"
 #include "pcednet/spatial/kd_tree.h"
-#include "workbench/shapes/part_pieces.h"
-#include "workbench/shapes/sampling.h"
+#include "workbench/shapes/solids/part_pieces.h"
+#include "workbench/shapes/surfaces/sampling.h"
 
 namespace pcednet::shapes {
 namespace {

@@ -4,9 +4,9 @@
 
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/core/random.h"
-#include "workbench/shapes/mesh_vertices.h"
-#include "workbench/shapes/sampling.h"
-#include "workbench/shapes/shape.h"
+#include "workbench/shapes/solids/mesh_vertices.h"
+#include "workbench/shapes/surfaces/sampling.h"
+#include "workbench/shapes/surfaces/shape.h"
 
 namespace pcednet::shapes {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "pcednet/core/error.h"
-#include "workbench/shapes/default_shapes.h"
 #include "workbench/shapes/recipe.h"
+#include "workbench/shapes/surfaces/default_shapes.h"
 #include "workbench/study/plan.h"
 
 namespace pcednet::study {
