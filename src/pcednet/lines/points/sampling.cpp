@@ -157,21 +157,24 @@ double bent_residual(const std::vector<Vec3>& places, const Vec3& normal) {
   return (heights - fitted).norm() / std::sqrt(static_cast<double>(places.size()));
 }
 
-/// Of the points with like normals, the noise about a bent surface, whatever layer others are of.
+/// Of the points with like normals, the noise about a bent surface, whatever layer others are of;
+/// those beyond a thin wall, which face away, are of none.
 std::vector<PlaneSample> bent_samples_at(const OrderedPoints& cloud,
                                          const std::vector<std::uint32_t>& points) {
   std::vector<spatial::Neighbour> nearest;
   cloud.nearest_others(points, kMoreNeighbours, nearest);
   std::vector<PlaneSample> samples;
-  std::vector<Vec3> offsets(kMoreNeighbours);
+  std::vector<Vec3> offsets;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const auto row = std::span(nearest).subspan(k * kMoreNeighbours, kMoreNeighbours);
     const double spacing = spacing_of(row);
     if (!(spacing > 0.0) || !has_like_normal(cloud, points[k], row)) continue;
     PlaneSums sums;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      offsets[i] = cloud.position(row[i].index) - cloud.position(points[k]);
-      sums.add(offsets[i]);
+    offsets.clear();
+    for (const spatial::Neighbour& near : row) {
+      if (cloud.face_away(points[k], near.index)) continue;
+      offsets.push_back(cloud.position(near.index) - cloud.position(points[k]));
+      sums.add(offsets.back());
     }
     samples.push_back({spacing, bent_residual(offsets, fit_plane(sums).normal), 0});
   }
