@@ -31,6 +31,20 @@ class Fee(CliTest):
         nothing = self.scores(*radii, "--threshold", "0.5")
         self.assertEqual(nothing["tp"] + nothing["fp"], 0)
 
+    def test_a_study_keeps_results_by_threshold(self):
+        size = np.ptp(self.position, axis=0).max()
+
+        def found(threshold):
+            run("study", "methods", "--methods", "fee", "--test", f"a={self.folder / 'a.ply'}", "--train",
+                self.folder / "a.ply", "-o", self.folder / "out", "--overwrite",
+                "--fee", f"a={size * 0.1},{size * 0.05}{threshold}")
+            study = json.loads((self.folder / "out/methods.json").read_text())
+            return sum(cloud["tp"] + cloud["fp"] for result in study["results"] for cloud in result["clouds"])
+
+        self.assertGreater(found(",0.16"), 0)
+        self.assertEqual(found(",0.5"), 0)
+        self.assertGreater(found(""), 0)
+
     def test_radii_of_a_study_are_numbers_to_their_end(self):
         for bad in ("a=0.1,0.2junk", "a=0.1", "a=0.1,0.2,0.3,0.4", "a=nan,0.2"):
             said = run("study", "classes", "--test", f"a={self.folder / 'a.ply'}", "--train", self.folder / "a.ply",

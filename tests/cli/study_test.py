@@ -1,6 +1,7 @@
 """pcednet study: the experiments as files, again from the cache, interrupted, refused."""
 import json
 import os
+import pathlib
 import shutil
 import signal
 import subprocess
@@ -113,6 +114,15 @@ class Study(CliTest):
         self.assertIn("0 networks trained, 0 clouds classified", second.stderr)
         self.assertEqual((self.folder / "out" / "classes.json").read_bytes(), before)
         self.assertEqual(first.stdout, second.stdout)
+
+    def test_another_program_classifies_anew(self):
+        other = self.folder / "other"
+        other.write_bytes(pathlib.Path(PROGRAM).read_bytes() + b"\0")
+        other.chmod(0o755)
+        for program, classified in ((PROGRAM, 2), (PROGRAM, 0), (other, 2), (other, 0)):
+            done = subprocess.run([program, "study", "methods", "--methods", "ca", "--test", "a=test", "--train", "train",
+                                   "-o", "out", "--overwrite"], cwd=self.folder, capture_output=True, text=True)
+            self.assertIn(f"{classified} clouds classified", done.stderr)
 
     def test_runs_the_sweeps(self):
         self.study("range", "density", "noise", "--test", "a=test", "--quick")

@@ -159,7 +159,8 @@ study::NamedMethod classic_method(const std::string& id, const std::string& titl
   method.method.settings = settings.empty() ? "its own settings" : "";
   for (const auto& [set, s] : settings) {
     method.method.settings +=
-        fmt::format("{} R {} r {}; ", set, s.offset_radius, s.convolution_radius);
+        fmt::format("{} R {} r {}{}; ", set, s.offset_radius, s.convolution_radius,
+                    s.threshold >= 0.0 ? fmt::format(" threshold {}", s.threshold) : "");
   }
   method.method.classes = [id, settings = std::move(settings)](const PointCloud& cloud,
                                                                const std::string& set,

@@ -342,8 +342,9 @@ void Runner::collect_classic(std::size_t v, const CloudSet& set, const ClassicMe
   Result result{.variant = v, .set = set.name};
   std::vector<Scored> clouds;
   for (const StudyCloud& cloud : set.clouds) {
-    const std::string key = fmt::format("classic {} {} {}: {}, {}", variant.id, method.settings,
-                                        set.name, cloud.digest, text_of(variant.treatment));
+    const std::string key =
+        fmt::format("classic {}: {} {} {}: {}, {}", basis_, variant.id, method.settings, set.name,
+                    cloud.digest, text_of(variant.treatment));
     auto found = cache_.find_classes(key);
     if (!found) {
       found = classify_classic(cloud, set.name, variant.treatment, method, options_.watts_per_core,
