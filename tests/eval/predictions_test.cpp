@@ -151,6 +151,16 @@ TEST_F(Predicted, PointsWithoutLabelsAreOnEdges) {
   EXPECT_NE(found.note.find("edge points"), std::string::npos);
 }
 
+TEST_F(Predicted, PointsWithoutLabelsAreNoneOfOwnClasses) {
+  const auto points = write("a.xyz", "0.9 0 0\n1.1 0 0\n");
+  const auto error = test::error_of([&] { read_predictions(points, positions_, own_); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->kind(), ErrorKind::kInsufficient);
+  EXPECT_NE(std::string(error->what()).find("has no labels"), std::string::npos) << error->what();
+  const ClassTable both = parse_classes("edges, pipe");
+  EXPECT_EQ(read_predictions(points, positions_, both).classes, (Classes{0, 2, 0, 0}));
+}
+
 TEST_F(Predicted, AreFoundByTheStemOfTheCloud) {
   const fs::path cloud = write("a.ply", "ply\n");
   EXPECT_TRUE(find_predictions(folder_, "a", cloud).empty());

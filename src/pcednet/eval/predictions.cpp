@@ -182,6 +182,12 @@ Predictions read_predictions(const fs::path& path, std::span<const Vec3> positio
       from = fmt::format("labels from its column {}", column->column);
     }
   }
+  if (labels.empty() && !has_edges(table)) {
+    throw Error(ErrorKind::kInsufficient,
+                fmt::format("{}: has no labels; points without any are read as edge points, and "
+                            "the classes are {}",
+                            path.string(), names_of(table)));
+  }
   if (labels.empty()) {
     return {nearest_to_edge_points(positions, others),
             fmt::format("{} points without labels: read as edge points", others.size())};

@@ -32,11 +32,11 @@ struct Predictions {
 ///   of the cloud in another order: every position gets the label of its nearest point in the file,
 ///   as in Himeur et al. 2021. Of as many points in other coordinates, the order is that of the
 ///   cloud;
-/// - a point file without labels, with points on edges only: the position nearest to each is
-///   sharp-edge.
-/// Throws what the readers throw, and Error(kInsufficient) where numbers do not fit, or are neither
-/// a class of `table` nor unlabelled; it names the line, the row or the point, from 0 but for
-/// lines.
+/// - for edge classes, a point file without labels, with points on edges only: the position nearest
+///   to each is sharp-edge.
+/// Throws what the readers throw, and Error(kInsufficient) where labels are missing, numbers do not
+/// fit, or are neither a class of `table` nor unlabelled; it names the line, the row or the point,
+/// from 0 but for lines.
 Predictions read_predictions(const std::filesystem::path& path, std::span<const Vec3> positions,
                              const ClassTable& table = edge_classes());
 
