@@ -99,6 +99,8 @@ void install_signal_handlers() {
   action.sa_handler = SIG_IGN;
   sigaction(SIGXFSZ, &action, nullptr);
   sigaction(SIGPIPE, &action, nullptr);
+  action.sa_handler = SIG_DFL;  // ignored, as some parents leave it, it hides how children end
+  sigaction(SIGCHLD, &action, nullptr);
 }
 
 EndsAtOnce::EndsAtOnce() {

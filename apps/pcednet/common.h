@@ -72,7 +72,8 @@ Progress console_progress(const Common& common);
 
 /// Makes SIGINT (Ctrl-C), SIGTERM and SIGHUP (a closing terminal; not under nohup) a request to
 /// stop, which console_progress() passes on; a second SIGINT ends the program at once. SIGXFSZ and
-/// SIGPIPE are ignored so that they surface as write errors.
+/// SIGPIPE are ignored so that they surface as write errors; SIGCHLD is not, whatever the parent
+/// ignored.
 void install_signal_handlers();
 
 /// Makes a signal that is a request to stop end the program at once, with the exit code of a stop:

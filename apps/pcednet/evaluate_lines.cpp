@@ -117,12 +117,8 @@ eval::LineFrame frame_for(const LineEvaluation& arguments, const std::string& st
   return eval::frame_of_cloud(formats::read_cloud(cloud).cloud.positions);
 }
 
-}  // namespace
-
-void evaluate_lines(const LineEvaluation& arguments, const Common& common) {
-  check_not_inputs(arguments.json, arguments.inputs);
-  check_not_inputs(arguments.json, {arguments.truth, arguments.cloud});
-  if (arguments.json != "-") check_writable(arguments.json, common.overwrite());
+std::vector<eval::NamedLineScores> score_line_files(const LineEvaluation& arguments) {
+  const EndsAtOnce scoring;
   std::vector<eval::NamedLineScores> scores;
   for (const fs::path& input : expand_inputs(arguments.inputs)) {
     const std::string stem = input.stem().string();
@@ -143,6 +139,16 @@ void evaluate_lines(const LineEvaluation& arguments, const Common& common) {
     throw Error(ErrorKind::kInsufficient,
                 fmt::format("{}: no true curves for any input", arguments.truth));
   }
+  return scores;
+}
+
+}  // namespace
+
+void evaluate_lines(const LineEvaluation& arguments, const Common& common) {
+  check_not_inputs(arguments.json, arguments.inputs);
+  check_not_inputs(arguments.json, {arguments.truth, arguments.cloud});
+  if (arguments.json != "-") check_writable(arguments.json, common.overwrite());
+  const std::vector<eval::NamedLineScores> scores = score_line_files(arguments);
   const std::string json = eval::to_json(scores);
   if (arguments.json == "-") {
     std::cout << json;

@@ -1,11 +1,13 @@
 """pcednet evaluate: scores as JSON, of a model and of other tools' predictions."""
 import json
 import os
+import signal
+import subprocess
 import unittest
 
 import numpy as np
 
-from support import CliTest, cube, run, sheet, write_own, write_ply
+from support import PROGRAM, CliTest, cube, run, sheet, write_own, write_ply
 
 
 class Evaluate(CliTest):
@@ -136,6 +138,20 @@ class Evaluate(CliTest):
             self.assertIn(f"{told}: its 48 lines are pieces of curves, which go on straight at 48 ends", said)
         for lines in (whole, square):
             self.assertNotIn("pieces of curves", run("evaluate", lines, "--truth", lines).stderr)
+
+    def test_scoring_of_lines_stops_at_once(self):
+        points = np.random.default_rng(1).random((6000, 3))  # to score them would take seconds
+        truth = self.folder / "truth.obj"
+        truth.write_text("".join(f"v {x} {y} {z}\n" for x, y, z in points)
+                         + "".join(f"l {i} {i + 1}\n" for i in range(1, len(points), 2)))
+        (self.folder / "warned.obj").write_text("v 0 0 0\n")
+        for number in (signal.SIGINT, signal.SIGTERM):
+            running = subprocess.Popen([PROGRAM, "evaluate", self.folder / "warned.obj", truth, "--truth", truth],
+                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            self.assertIn("taken for a result without lines", running.stderr.readline())
+            running.send_signal(number)
+            self.assertEqual(running.communicate(timeout=60), ("", "pcednet: stopped by the user\n"))
+            self.assertEqual(running.returncode, 130)
 
     def test_refuses_lines_without_truth(self):
         truth = self.folder / "truth.obj"

@@ -103,6 +103,7 @@ class Options(CliTest):
                 ("--ascii is for .ply and .pcd", "classify", self.cloud, "-o", self.folder / "x.xyz", "--ascii"),
                 ("--seed requires --noise, --spacing, --subsample or --sample", "convert", self.cloud, "-o", self.out, "--seed", 3),
                 ("--exact excludes --eps", "describe", self.cloud, "-o", self.folder / "x.npy", "--exact", "--eps", 0.2),
+                ("--all excludes --vpc", "info", self.cloud, "--all", "--vpc", self.folder / "x.vpc"),
                 ("--view is for .svg", *lines, self.folder / "x.dxf", "--view", "front"),
                 ("--unit is for .dxf .svg files", *lines, self.folder / "x.obj", "--unit", "mm"),
                 ("--dxf-arcs is for .dxf", *lines, self.folder / "x.obj", "--dxf-arcs", "flat"),

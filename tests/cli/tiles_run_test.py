@@ -198,6 +198,13 @@ class TilesRun(TilesTest):
         said = run("tiles", "run", plan, "--jobs", 3, expect=3).stderr
         self.assertIn(f"tiles failed, for the reasons above: 0 to {len(tiles['tiles']) - 1}\n", said)
 
+    def test_tiles_that_failed_are_told_where_the_parent_ignores_their_end(self):
+        plan, tiles = self.small(tile=1.0)
+        (self.folder / "small.ply").write_bytes((self.folder / "small.ply").read_bytes()[:-20] + bytes(20))
+        said = run("tiles", "run", plan, "--jobs", 3, expect=3,
+                   preexec_fn=lambda: signal.signal(signal.SIGCHLD, signal.SIG_IGN)).stderr
+        self.assertIn(f"tiles failed, for the reasons above: 0 to {len(tiles['tiles']) - 1}\n", said)
+
     def test_a_result_replaces_no_file_of_the_plan(self):
         plan, content = self.small()
         run("tiles", "run", plan)
@@ -210,6 +217,14 @@ class TilesRun(TilesTest):
                 self.assertNotIn("No such file", done.stderr)
             self.assertEqual(pathlib.Path(needed).read_bytes(), before)
         run("tiles", "status", plan)
+
+    def test_status_fails_before_it_reads_for_a_result_that_is_there(self):
+        plan, content = self.small()
+        there = self.folder / "there.json"
+        there.touch()
+        done = run("tiles", "status", plan, "--verify", "--json", there, expect=2)
+        self.assertIn("there.json: exists already", done.stderr)
+        self.assertEqual(done.stdout, "")
 
     def test_an_input_that_changed_is_found_where_all_is_done(self):
         plan, content = self.small()

@@ -209,7 +209,9 @@ Results score_all(const EvaluateArguments& arguments, const Common& common) {
   check_is_folder(arguments.predictions);
   std::optional<detect::EdgeModel> model;
   if (!arguments.model.name.empty()) model = load_model(arguments.model);
-
+  if (arguments.calibration && has_own_classes(model->table)) {
+    throw Error(ErrorKind::kUsage, "evaluate: --calibration is for edge classes");
+  }
   const Way way = {arguments, model ? &*model : nullptr, progress};
   Results results = first_results(arguments, way.model);
   std::optional<Error> unlabelled;  // the first
@@ -266,9 +268,6 @@ void evaluate(EvaluateArguments arguments, const Common& common) {
   const bool own = results.classes.clouds > 0;
   warn_of_edges("the labels", results.labelled, arguments.positive);
   warn_of_edges("the predictions", results.found, arguments.positive);
-  if (own && arguments.calibration) {
-    throw Error(ErrorKind::kUsage, "evaluate: --calibration is for edge classes");
-  }
   const auto json =
       own ? eval::to_json(results.classes)
           : eval::to_json(results.scores, arguments.calibration ? &results.calibration : nullptr);

@@ -177,13 +177,16 @@ void add_info(CLI::App& app, Common& common) {
       ->required();
   command->add_option("--json", request->json,
                       "Write the result as JSON to this file; - for standard output only");
-  command->add_flag("--all", request->all,
-                    "Read all points of LAS, LAZ and binary PLY files of more than two million, "
-                    "not a sample of them");
+  CLI::Option* all = command->add_flag(
+      "--all", request->all,
+      "Read all points of LAS, LAZ and binary PLY files of more than two million, "
+      "not a sample of them");
   command->add_option("--vpc", request->vpc,
                       "Instead of describing them, list LAS, LAZ and COPC files in a virtual point "
                       "cloud for QGIS; only their headers are read");
-  command->get_option("--json")->excludes(command->get_option("--vpc"));
+  CLI::Option* vpc = command->get_option("--vpc");
+  command->get_option("--json")->excludes(vpc);
+  all->excludes(vpc);
   command->callback([request, &common] { info(*request, common); });
 }
 

@@ -86,7 +86,8 @@ void run(const NormalsRequest& request, const Common& common) {
     throw Error(ErrorKind::kInsufficient, request.input + ": has no points");
   }
   formats::check_positions(request.output, cloud);
-  normals::PreparedNormals prepared = make_normals(request, cloud, console_progress(common));
+  const Progress progress = console_progress(common);
+  normals::PreparedNormals prepared = make_normals(request, cloud, progress);
   if (const auto scanners = scanner_of_points(cloud);
       !request.keep && request.viewpoint.empty() && !scanners.empty()) {
     const std::size_t faced = normals::face_scanners(cloud.positions, prepared.normals, scanners);
@@ -99,7 +100,8 @@ void run(const NormalsRequest& request, const Common& common) {
     for (Vec3& normal : cloud.normals) normal = Vec3::Zero() - normal;
   }
   warn_of_losses(request.output, formats::losses(request.output, cloud));
-  formats::write_cloud(request.output, cloud, {.overwrite = common.overwrite()});
+  formats::write_cloud(request.output, cloud,
+                       {.overwrite = common.overwrite(), .progress = &progress});
   report(request, prepared);
 }
 

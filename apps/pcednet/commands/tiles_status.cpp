@@ -131,6 +131,7 @@ void report_changed(const std::vector<Error>& changed) {
 
 void show_status(const StatusArguments& arguments, const Common& common) {
   check_not_input(arguments.json, arguments.plan);
+  if (arguments.json != "-") check_writable(arguments.json, common.overwrite());
   const tiles::Plan plan = tiles::read_plan(arguments.plan);
   tiles::check_not_of_plan(arguments.json, plan);
   const Status status = find_status(plan, arguments.verify, console_progress(common));
