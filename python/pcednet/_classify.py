@@ -160,8 +160,9 @@ def classify(xyz, normals=None, *, model="general", threads=0, progress=None, vi
     positions, is_float32, given, scanners = _clouds.points_of(xyz, normals, viewpoint, keep_orientation, True)
     model = _models.model_of(model)
     core = model._core if context else model._core.without_context()
-    if s_min or s_max or exact:
-        core = core.with_scales(_arrays.real(s_min, "s_min"), _arrays.real(s_max, "s_max"), bool(exact))
+    given_scales = {name: value for name, value in (("s_min", s_min), ("s_max", s_max), ("exact", exact)) if value}
+    if given_scales:
+        core = core.with_settings(descriptor_settings(given_scales))
     with _arrays.reporting(progress) as report:
         parts = _core.classify(core, positions, is_float32, given, scanners, bool(boundary),
                                bool(keep_orientation), report, _arrays.thread_count(threads))

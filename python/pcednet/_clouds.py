@@ -111,10 +111,14 @@ class Cloud:
         """The attribute `name`, also as CloudCompare spells it; None if there is none."""
         return self.attributes.get(f"scalar_{name}", self.attributes.get(name))
 
+    def _own_labels(self):
+        """The labels as uint8, with 255 for unlabelled; None if there are none."""
+        return None if self.labels is None else _arrays.labels(self.labels, len(self), names=self.class_names)
+
     def _labels(self):
         """The labels, or else those of a column that other programs give to edges, with a warning, as for the program."""
         if self.labels is not None:
-            return self.labels
+            return self._own_labels()
         columns = {str(name): _attribute(name, values, len(self)) for name, values in self.attributes.items()
                    if "edge" in str(name).lower() or "label" in str(name).lower()}
         labels, column = _core.edge_column(columns, len(self)) or (None, None)
@@ -139,13 +143,12 @@ class Cloud:
         """Whether the labels are those that a file of a result came with."""
         if self._predictions is None or self.labels is None:
             return False
-        return self._predictions == _digest(_arrays.labels(self.labels, len(self), names=self.class_names))
+        return self._predictions == _digest(self._own_labels())
 
     def _truth_of_result(self):
         columns = {name: _attribute(name, self.attributes[name], len(self))
                    for name in _core.TRUTH_COLUMNS + _core.RESULT_COLUMNS if name in self.attributes}
-        labels = None if self.labels is None else _arrays.labels(self.labels, len(self), names=self.class_names)
-        return _core.truth_of_result([str(line) for line in self.comments], columns, labels)
+        return _core.truth_of_result([str(line) for line in self.comments], columns, self._own_labels())
 
     def _truth(self, name):
         """The labels to learn from or to score against. Of a result, as for the program: those that were painted or
@@ -161,9 +164,7 @@ class Cloud:
         """The labels, if they were changed in a result since it was read: they are true; otherwise None."""
         if self._predictions is None or self.labels is None or self._truth_of_result() is None:
             return None
-        if self._has_predictions():
-            return None
-        return _arrays.labels(self.labels, len(self), names=self.class_names)
+        return None if self._has_predictions() else self._own_labels()
 
     @property
     def faces(self):
@@ -218,7 +219,7 @@ class Cloud:
             With the coordinate system of the whole, without its faces.
         """
         chosen = _arrays.indices(points, len(self), "points")
-        part = Cloud(self.xyz[chosen], name=self.name)
+        part = Cloud(np.asarray(self.xyz)[chosen], name=self.name)
         part._is_float32, part._wide = self._is_float32, self._wide
         for name in ("normals", "colours", "labels"):
             values = getattr(self, name)
@@ -350,8 +351,7 @@ def _parts_of(cloud):
     return {"xyz": _arrays.vectors(cloud.xyz, "xyz"),
             "normals": _arrays.optional_vectors(cloud.normals, "normals", rows),
             "colours": colours,
-            "labels": None if cloud.labels is None else _arrays.labels(
-                cloud.labels, rows, names=cloud.class_names),
+            "labels": cloud._own_labels(),
             "attributes": attributes, "comments": comments,
             "scanners": _arrays.vectors(cloud.scanners, "scanners"),
             "kept": cloud._kept if rows == cloud._kept_rows else None, "is_float32": cloud._is_float32}

@@ -144,10 +144,11 @@ def lines(xyz, labels=None, normals=None, *, p_sharp=None, p_smooth=None,
     min_confidence = _arrays.share(min_confidence, "min_confidence")
     if labels is None and isinstance(xyz, _clouds.Cloud):
         labels = xyz._classes()
-        if labels is not None and xyz.labels is not None and not np.array_equal(labels, xyz.labels):
-            _arrays.warn([f"{xyz.name or 'the cloud'}: its columns edge_class and label differ: edge_class is drawn"])
-        if labels is not None and (np.asarray(labels) == 255).all():
-            labels = None
+        if labels is not None:
+            labels = _arrays.labels(labels, len(xyz), names=xyz.class_names)
+            if xyz.labels is not None and not np.array_equal(labels, xyz._own_labels()):
+                _arrays.warn([f"{xyz.name or 'the cloud'}: its columns edge_class and label differ: edge_class is drawn"])
+            labels = None if (labels == _arrays.UNLABELLED).all() else labels
         if labels is not None:
             _core.check_edges(xyz._class_lines(), "lines", False)
             p_sharp = _probability(xyz, "p_sharp") if p_sharp is None else p_sharp
@@ -222,6 +223,7 @@ def read_lines(path):
 
 def _probability(cloud, name):
     values = cloud._scalar(name)
+    values = None if values is None else _arrays.numbers(values, name)
     if values is not None and not ((values >= 0) & (values <= 1)).all():
         raise UsageError(f"{name}: not all numbers of the cloud are from 0 to 1")
     return values

@@ -39,7 +39,8 @@ class Model:
         The names of classes by number: the edge classes or own ones.
     descriptor : dict
         The description of a point: ``scales``, ``features`` per scale, ... as
-        ``describe(xyz, **model.descriptor)`` takes them.
+        ``describe(xyz, **model.descriptor)`` takes them. ``s_min``, ``s_max``, ``exact`` and ``eps`` are in it if
+        the model was trained here with them; a file does not keep them.
     columns : list of str
         The names of the numbers per scale.
     has_context : bool
@@ -101,11 +102,20 @@ class Model:
             The file exists and `overwrite` is False.
         UsageError
             Another extension. ONNX: of a CNN, or of a model trained with another symmetry than its average.
+
+        Warns
+        -----
+        PcednetWarning
+            The file does not keep the ``s_min``, ``s_max``, ``exact`` or ``eps`` of the training: give them to
+            :func:`classify`.
         """
         path = os.fsdecode(path)
         extension = os.path.splitext(path)[1].lower()
         if extension == ".safetensors":
             self._core.save(path, overwrite)
+            lost = self._unsaved()
+            _arrays.warn([f"{path}: does not keep {', '.join(lost)}, which the model was trained with: give "
+                          "s_min, s_max and exact to classify"] if lost else [])
             return
         if extension != ".onnx":
             raise UsageError(f"{path}: a name that ends in .safetensors or .onnx is needed")
@@ -203,21 +213,25 @@ class Model:
         """dict of str to str: the file's metadata on the first network and its training."""
         return self._core.network.metadata
 
+    def _unsaved(self):
+        """The settings of the descriptor that a file does not keep."""
+        return {name: value for name, value in self.descriptor.items() if name in ("s_min", "s_max", "exact", "eps")}
+
     def __reduce__(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "model.safetensors"
-            self.save(path)
-            return _unpickled, (path.read_bytes(), self.history)
+            self._core.save(path, False)
+            return _unpickled, (path.read_bytes(), self.history, self._unsaved())
 
     def __repr__(self):
         return f"<Model {self.name!r}: classes {self.classes}, {self.weights} weights>"
 
 
-def _unpickled(content, history):
+def _unpickled(content, history, settings=None):
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / "model.safetensors"
         path.write_bytes(content)
-        return Model(_core.EdgeModel(path), history)
+        return Model(_core.EdgeModel(path).with_settings(settings or {}), history)
 
 
 def model_of(model):

@@ -70,7 +70,7 @@ def train(clouds, labels=None, *, normals=None, start=None, name="model", classe
     **descriptor
         ``scales``, ``features``, ... as in :func:`describe`. Unless ``s_max_ratio`` or ``s_max`` is given, the scales
         grow with the diagonal of a cloud, so that pieces and larger clouds are not seen alike; those of ``start="general"``
-        follow the spacing of the points.
+        follow the spacing of the points. A model file does not keep ``s_min``, ``s_max``, ``exact`` and ``eps``.
 
     Returns
     -------

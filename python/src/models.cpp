@@ -45,6 +45,12 @@ py::dict settings_of(const gls::ScaleSpaceOptions& options) {
   settings["second_gate"] = options.second_gate;
   settings["s_max_ratio"] = options.range.s_max_ratio;
   settings["octaves"] = options.range.octaves;
+  // What files do not keep.
+  const gls::ScaleSpaceOptions usual;
+  if (options.range.s_min != usual.range.s_min) settings["s_min"] = options.range.s_min;
+  if (options.range.s_max != usual.range.s_max) settings["s_max"] = options.range.s_max;
+  if (options.engine == gls::Engine::kExact) settings["exact"] = true;
+  if (options.eps != usual.eps) settings["eps"] = options.eps;
   return settings;
 }
 
@@ -73,8 +79,7 @@ py::array_t<float> predict(const nn::Model& model, const Array<float>& rows) {
 
 }  // namespace
 
-gls::ScaleSpaceOptions descriptor_of(const py::dict& settings) {
-  gls::ScaleSpaceOptions options;
+gls::ScaleSpaceOptions descriptor_of(const py::dict& settings, gls::ScaleSpaceOptions options) {
   const auto set = [&](const char* name, auto& value) {
     if (settings.contains(name)) {
       value = settings[name].cast<std::remove_reference_t<decltype(value)>>();
@@ -136,11 +141,9 @@ void add_models(py::module_& module) {
              detect::drop_context(model);
              return model;
            })
-      .def("with_scales",
-           [](EdgeModel model, double s_min, double s_max, bool exact) {
-             model.descriptor.range.s_min = s_min;
-             model.descriptor.range.s_max = s_max;
-             if (exact) model.descriptor.engine = gls::Engine::kExact;
+      .def("with_settings",
+           [](EdgeModel model, const py::dict& settings) {
+             model.descriptor = descriptor_of(settings, std::move(model.descriptor));
              return model;
            })
       .def_readwrite("name", &EdgeModel::name)

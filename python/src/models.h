@@ -12,9 +12,10 @@
 
 namespace pcednet::python {
 
-/// The descriptor from keyword arguments named as the fields; missing ones have the library's
-/// defaults. The package has checked the names.
-gls::ScaleSpaceOptions descriptor_of(const pybind11::dict& settings);
+/// `options` with the keyword arguments of describe() that are given. The package has checked the
+/// names.
+gls::ScaleSpaceOptions descriptor_of(const pybind11::dict& settings,
+                                     gls::ScaleSpaceOptions options = {});
 
 /// gls::note_on_extent() of a cloud at these positions.
 std::string note_on_extent(const gls::ScaleSpaceOptions& options, std::span<const Vec3> positions,

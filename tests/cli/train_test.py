@@ -374,6 +374,7 @@ class Train(CliTest):
             more = [] if "--start" in options else ["--epochs", 1]
             said = run("train", source, "-o", self.folder / "m.safetensors", "--overwrite", *more, *options).stderr
             self.assertEqual("its scales grow with the diagonal" in said, not options)
+            self.assertEqual("the model does not keep --s-min and --s-max" in said, "--s-max" in options)
 
     def test_says_where_nothing_is_held_out(self):
         p, n, label = cube(1000)

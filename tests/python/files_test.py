@@ -150,6 +150,8 @@ class Files(CliTest):
         np.testing.assert_allclose(back.normals, -normals[labels == 2], atol=1e-7)
         np.testing.assert_array_equal(back["height"], part.xyz[:, 2].astype(np.float32))
         self.assertIn(b"property float x", self.path("part.ply").read_bytes()[:100])
+        cloud.xyz = cloud.xyz.tolist()
+        np.testing.assert_array_equal(cloud.select([3, 1]).xyz, np.asarray(cloud.xyz)[[3, 1]])
 
     def test_errors_are_of_python_kinds(self):
         positions = cube(50)[0]

@@ -106,10 +106,16 @@ class Lines(CliTest):
         write_ply(self.path("unlabelled.ply"), self.positions, self.normals,
                   labels=np.full(len(self.positions), 255, np.uint8))
         self.assertEqual(len(pcednet.lines(pcednet.read(self.path("unlabelled.ply")))), 12)
+        for none in (-1, 255):
+            cloud = pcednet.Cloud(self.positions, self.normals, labels=np.full(len(self.positions), none))
+            self.assertEqual(len(pcednet.lines(cloud)), 12)
 
     def test_labels_of_ones_own_are_drawn(self):
         given = pcednet.lines(self.positions, self.result.labels, self.normals,
                               p_sharp=self.result.p_sharp, p_smooth=self.result.p_smooth)
+        cloud = pcednet.Cloud(self.positions, self.normals, labels=self.result.labels.tolist(), attributes={
+            name: getattr(self.result, name).tolist() for name in ("p_sharp", "p_smooth")})
+        self.assertEqual([c.confidence for c in pcednet.lines(cloud)], [c.confidence for c in given])
         self.assertEqual(len(given), 12)
         self.assertEqual(pcednet.lines(self.positions, np.zeros(12_000, np.uint8)), [])
         with self.assertRaises(pcednet.UsageError):

@@ -91,6 +91,27 @@ class Training(CliTest):
             self.assertEqual((trained.descriptor, trained.columns),
                              (model.descriptor, model.columns), name)
 
+    def test_settings_that_a_file_lacks_are_told_and_pickled(self):
+        rows = self.positions[:1500], self.normals[:1500]
+        settings = {"s_min": 0.05, "s_max": 0.5, "exact": True, "eps": 0.3}
+        model = pcednet.train(rows[0], self.labels[:1500], normals=rows[1], epochs=1, scales=4, **settings)
+        self.assertLessEqual(settings.items(), model.descriptor.items())
+        result = model.classify(*rows, boundary=False)
+        self.assertEqual(result.scales, (0.05, 0.5))
+        self.assertEqual(model.classify(*rows, exact=True).scales, (0.05, 0.5))
+        matrix = pcednet.describe(*rows, **model.descriptor)
+        np.testing.assert_array_equal(model.predict(matrix)[:, -1], result.p_sharp)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            copied = pickle.loads(pickle.dumps(model))
+        np.testing.assert_array_equal(copied.classify(*rows).p_sharp, result.p_sharp)
+        with self.assertWarnsRegex(pcednet.PcednetWarning, "does not keep s_min, s_max, exact, eps, which"):
+            model.save(self.path("scaled.safetensors"))
+        loaded = pcednet.Model.load(self.path("scaled.safetensors"))
+        self.assertTrue(set(settings).isdisjoint(loaded.descriptor))
+        again = loaded.classify(*rows, **{name: settings[name] for name in ("s_min", "s_max", "exact")})
+        np.testing.assert_array_equal(again.p_sharp, result.p_sharp)
+
     def test_octaves_describe_uneven_clouds_as_the_classification_does(self):
         model = pcednet.Model.load("general")
         random = np.random.default_rng(3)

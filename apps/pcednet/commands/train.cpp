@@ -233,6 +233,9 @@ void tell(const detect::TrainedModel& trained, bool could_start) {
 }
 
 void tell_scales(const gls::ScaleRange& range, bool could_start) {
+  if (range.s_min > 0 || range.s_max > 0) {
+    say("  the model does not keep --s-min and --s-max: give classify the same");
+  }
   if (range.s_max > 0 || range.s_max_ratio > 0) return;
   say(
       fmt::format("  its scales grow with the diagonal of a cloud; those {}with --s-max-ratio 8 "
