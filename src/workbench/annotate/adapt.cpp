@@ -249,7 +249,7 @@ class SecondLook {
 
 }  // namespace
 
-Start make_start(detect::EdgeModel model, const Subject& subject) {
+Start make_start(detect::EdgeModel model, const Subject& subject, const Progress* progress) {
   const auto largest = std::max_element(
       subject.clouds.begin(), subject.clouds.end(), [](const auto& a, const auto& b) {
         return a.described.cloud.traits.points < b.described.cloud.traits.points;
@@ -257,7 +257,7 @@ Start make_start(detect::EdgeModel model, const Subject& subject) {
   const detect::CloudTraits traits = detect::traits_for(model, largest->described.cloud);
   Start start{.model = detect::suited_to(std::move(model), traits)};
   std::optional<nn::Model> context = std::exchange(start.model.context, {});
-  std::vector<detect::Classification> found = classify_each(subject, start.model);
+  std::vector<detect::Classification> found = classify_each(subject, start.model, progress);
   if (context) {
     const std::vector<std::uint8_t> classes = detect::edge_outputs(start.model);
     for (std::size_t k = 0; k < found.size(); ++k) {
@@ -361,7 +361,7 @@ detect::TrainedModel adapt_clouds(const std::string& name, const detect::EdgeMod
   detect::TrainedModel trained;
   trained.adapted = true;
   Adapted adapted = adapt(
-      name, make_start(model, subject), subject, labels, seed,
+      name, make_start(model, subject, progress), subject, labels, seed,
       [&](const nn::EpochReport& report) {
         trained.epochs = report.epoch;
         if (on_epoch) on_epoch(report);

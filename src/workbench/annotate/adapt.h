@@ -21,8 +21,10 @@ struct Start {
   std::vector<detect::ContextPlaces> places = {};  ///< one per cloud, if there is a context network
 };
 
-/// `model`, and its predictions for clouds described as it requires.
-Start make_start(detect::EdgeModel model, const Subject& subject);
+/// `model`, and its predictions for clouds described as it requires. Throws Error(kCancelled) if
+/// `progress` asks to cancel.
+Start make_start(detect::EdgeModel model, const Subject& subject,
+                 const Progress* progress = nullptr);
 
 /// The label of a point that training must not use: it is not painted, and the start's prediction
 /// for it is meaningless.

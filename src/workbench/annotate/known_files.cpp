@@ -55,8 +55,6 @@ void check_known(const fs::path& file, std::span<const InputIdentity> known,
                   which, its == at.first->name ? "" : ", " + its));
 }
 
-namespace fs = std::filesystem;
-
 namespace {
 
 fs::path folder_of(const fs::path& project) {

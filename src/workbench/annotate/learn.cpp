@@ -179,7 +179,7 @@ detect::TrainedModel learn_project(const Project& project, const ProjectFiles& f
     subject.clouds.push_back({*one.described, one.prepared.positions, one.prepared.curve});
   }
   std::optional<Start> start;
-  if (model) start = make_start(std::move(*model), subject);
+  if (model) start = make_start(std::move(*model), subject, progress);
   nn::EpochReport last;
   const std::size_t seen = points_of(std::span(project.inputs).first(clouds));
   Adapted learnt = learn(

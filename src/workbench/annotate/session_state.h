@@ -72,6 +72,7 @@ struct Session::State {
 
   void emit(const Event& event) const;
   Progress progress(std::uint64_t of_generation);
+  Progress cancellation(std::uint64_t of_generation) const;  ///< the same without a report
   bool is_void(std::uint64_t of_generation) const;
 
   // On the worker's thread, without the mutex.

@@ -31,7 +31,8 @@ std::shared_ptr<const Start> Session::State::start_of(const Settings& settings, 
   detect::EdgeModel model = with_classes(options.load_model(settings.start), settings.classes);
   check_start(model, settings.start, table());
   const auto rows = descriptions(model.descriptor, clouds, mine);
-  start = std::make_shared<const Start>(make_start(std::move(model), subject_of(rows)));
+  const Progress cancel = cancellation(mine);
+  start = std::make_shared<const Start>(make_start(std::move(model), subject_of(rows), &cancel));
   start_name = settings.start;
   start_classes = settings.classes;
   start_clouds = clouds;
@@ -56,6 +57,7 @@ ClassTable Session::State::table() const {
 Predictions Session::State::predictions_of(const detect::EdgeModel& model,
                                            const detect::Classification& found,
                                            std::uint64_t mine) {
+  const Progress cancel = cancellation(mine);
   Predictions predictions;
   std::vector<std::shared_ptr<const Described>> rows;
   for (std::size_t k = 0; k < scenes.size(); ++k) {
@@ -64,8 +66,9 @@ Predictions Session::State::predictions_of(const detect::EdgeModel& model,
     if (!is_known && rows.empty()) rows = descriptions(model.descriptor, scenes.size(), mine);
     predictions.push_back(make_prediction(
         *scenes[k], model,
-        is_known ? part_of(found, firsts[k], points)
-                 : detect::classify(rows[k]->cloud, scenes[k]->prepared.positions, model)));
+        is_known
+            ? part_of(found, firsts[k], points)
+            : detect::classify(rows[k]->cloud, scenes[k]->prepared.positions, model, &cancel)));
   }
   return predictions;
 }
@@ -79,7 +82,7 @@ bool Session::State::train(Run& run, std::span<const std::uint8_t> painted_class
   const std::size_t clouds = std::min(run.record.clouds, scenes.size());
   const auto from = start_of(its, clouds, mine);
   const auto rows = descriptions(descriptor_of(from ? &from->model : nullptr), clouds, mine);
-  const Progress cancel = {.report = {}, .cancelled = [&] { return is_void(mine); }};
+  const Progress cancel = cancellation(mine);
   painted_classes = painted_classes.first(firsts[clouds - 1] + scenes[clouds - 1]->cloud.size());
   const auto on_epoch = [&](const nn::EpochReport& report) {
     const int epochs = epochs_of(from.get());
@@ -156,8 +159,9 @@ bool Session::State::train_again(Run& run, std::uint64_t mine) {
 /// Classifies with a model that was trained before.
 void Session::State::classify(Run& run, std::uint64_t mine) {
   const auto rows = descriptions(run.model->descriptor, scenes.size(), mine);
+  const Progress cancel = cancellation(mine);
   Stopwatch watch;
-  const auto found = annotate::classify(subject_of(rows), *run.model);
+  const auto found = annotate::classify(subject_of(rows), *run.model, &cancel);
   if (!run.record.facts.seconds_classify) run.record.facts.seconds_classify = watch.lap();
   run.predictions = predictions_of(*run.model, found, mine);
 }
@@ -166,7 +170,9 @@ void Session::State::restore_once(int number, std::uint64_t mine) {
   Run run;
   {
     const Lock lock(mutex);
-    run = *runs.find(number);
+    const Run* found = runs.find(number);
+    if (!found) return;  // forgotten since it was asked for
+    run = *found;
   }
   try {
     if (number == 0) return show_start(run.record.settings, mine);
@@ -246,7 +252,7 @@ void Session::State::judge_once(std::uint64_t mine) {
   const std::size_t clouds = std::min(record.clouds, scenes.size());
   const auto from = start_of(record.settings, clouds, mine);
   const auto rows = descriptions(descriptor_of(from ? &from->model : nullptr), clouds, mine);
-  const Progress cancel = {.report = {}, .cancelled = [&] { return is_void(mine); }};
+  const Progress cancel = cancellation(mine);
   const HeldOut held_out = hold_out(subject_of(rows), *its, record.settings, from.get(), &cancel);
   const Lock lock(mutex);
   runs.judge(record.number, held_out);

@@ -225,8 +225,6 @@ PointView Session::pick(const Vec3& local_origin, const Vec3& direction, double 
   return view;
 }
 
-using Lock = std::unique_lock<std::mutex>;
-
 LinesView Session::lines(std::size_t cloud) const {
   const Lock lock(state_->mutex);
   state_->check_cloud(cloud);
@@ -274,6 +272,7 @@ void Session::State::find_lines_once(std::size_t cloud, bool boundaries, std::ui
     prediction = runs.prediction(cloud);
     version = runs.version();
   }
+  if (!prediction) return;  // forgotten since it was asked for
   try {
     const Progress reporter = progress(mine);
     const detect::PreparedCloud& prepared = scenes[cloud]->prepared;

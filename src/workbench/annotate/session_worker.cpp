@@ -22,16 +22,20 @@ bool Session::State::is_void(std::uint64_t of_generation) const {
   return orders.stopping || orders.generation != of_generation;
 }
 
+Progress Session::State::cancellation(std::uint64_t of_generation) const {
+  return {.report = {}, .cancelled = [this, of_generation] { return is_void(of_generation); }};
+}
+
 Progress Session::State::progress(std::uint64_t of_generation) {
-  return {.report =
-              [this](const std::string& name, double fraction) {
-                {
-                  const Lock lock(mutex);
-                  loading.stage = name;
-                }
-                emit(StageProgress{name, fraction});
-              },
-          .cancelled = [this, of_generation] { return is_void(of_generation); }};
+  Progress progress = cancellation(of_generation);
+  progress.report = [this](const std::string& name, double fraction) {
+    {
+      const Lock lock(mutex);
+      loading.stage = name;
+    }
+    emit(StageProgress{name, fraction});
+  };
+  return progress;
 }
 
 /// The worker's loop: load, then restore, train, find lines and judge as ordered.
