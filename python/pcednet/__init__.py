@@ -10,8 +10,9 @@ lock; Ctrl-C stops it; anything that deserves a look is a warning.
 """
 
 from ._classify import Result, classify, describe, estimate_normals
-from ._clouds import Cloud, generate, read, write
+from ._clouds import Cloud
 from ._core import Curve, __version__
+from ._files import generate, read, write
 from ._lines import Lines, lines, read_lines
 from ._models import Model, shipped_models
 from ._scores import LineScores, Scores, evaluate, evaluate_lines

@@ -64,6 +64,15 @@ def optional_vectors(values, name, rows):
     return None if values is None else vectors(values, name, rows)
 
 
+def colours(values, rows):
+    if values is None:
+        return None
+    array = numbers(values, "colours")
+    if array.dtype != np.uint8 or array.shape != (rows, 3):
+        raise UsageError(f"colours: uint8 of shape ({rows}, 3) are needed, not {array.dtype} of {array.shape}")
+    return np.require(array, requirements=["C", "A"])
+
+
 def scanners(places, rows):
     """The scanner position of each point, from one for all or one for each; None if unknown."""
     if places is None:
@@ -146,6 +155,29 @@ def indices(some, rows, name):
     if array.min() < 0 or array.max() >= rows:
         raise UsageError(f"{name}: indices from 0 to {rows - 1} are possible")
     return array
+
+
+def attribute(name, values, rows):
+    """The numbers of an attribute, of a type that files have."""
+    array = numbers(values, f"attribute {name}")
+    if array.ndim not in (1, 2) or len(array) != rows:
+        raise UsageError(f"attribute {name}: shape ({rows},) or ({rows}, k) is needed, not {array.shape}")
+    wanted = {"b": np.dtype(np.uint8)}.get(array.dtype.kind, array.dtype.newbyteorder("="))
+    wanted = np.dtype(np.float32) if wanted == np.float16 else wanted
+    return np.require(array, wanted, ["C", "A"])
+
+
+def is_wide(array):
+    return array.dtype.kind in "iu" and array.dtype.itemsize == 8
+
+
+def narrowed(array):
+    """Integers of 64 bits, which numpy makes by itself, in 32 if they fit: PLY has none of 64, but two columns."""
+    if not is_wide(array):
+        return array
+    narrow = np.int32 if array.dtype.kind == "i" else np.uint32
+    fits = array.size == 0 or (np.iinfo(narrow).min <= array.min() and array.max() <= np.iinfo(narrow).max)
+    return array.astype(narrow) if fits else array
 
 
 def probabilities(values, rows, name):

@@ -304,8 +304,8 @@ def estimate_normals(xyz, normals=None, *, neighbours=0, viewpoint=None, threads
     positions, _, _, scanners = _clouds.points_of(xyz, None, viewpoint)
     given = _arrays.optional_vectors(normals, "normals", len(positions))
     with _arrays.reporting(progress) as report:
-        made, _, unusable = _core.make_normals(positions, given, scanners, _arrays.whole(neighbours, "neighbours"),
-                                               report, _arrays.thread_count(threads))
+        made, unusable = _core.make_normals(positions, given, scanners, _arrays.whole(neighbours, "neighbours"),
+                                            report, _arrays.thread_count(threads))
     if unusable:
         _arrays.warn([f"{unusable} points without a normal: not finite, or on a line of points"])
     return made

@@ -1,12 +1,10 @@
-"""Clouds of points with their fields, in memory and in files."""
+"""Clouds of points with their fields."""
 
 import hashlib
-import os
 
 import numpy as np
 
 from . import _arrays, _core
-from .errors import MissingFileError, UsageError
 
 
 class Cloud:
@@ -65,7 +63,7 @@ class Cloud:
         cloud.comments, cloud.scanners = parts["comments"], parts["scanners"]
         cloud._is_float32 = parts["is_float32"]
         cloud._kept, cloud._kept_rows = parts["kept"], len(cloud)
-        cloud._wide = frozenset(name for name, values in cloud.attributes.items() if _is_wide(values))
+        cloud._wide = frozenset(name for name, values in cloud.attributes.items() if _arrays.is_wide(values))
         if _core.ESTIMATED_NORMALS in cloud.comments:
             cloud._estimates = _digest(cloud.xyz, cloud.normals)
         if cloud._truth_of_result() is not None:
@@ -119,7 +117,7 @@ class Cloud:
         """The labels, or else those of a column that other programs give to edges, with a warning, as for the program."""
         if self.labels is not None:
             return self._own_labels()
-        columns = {str(name): _attribute(name, values, len(self)) for name, values in self.attributes.items()
+        columns = {str(name): _arrays.attribute(name, values, len(self)) for name, values in self.attributes.items()
                    if "edge" in str(name).lower() or "label" in str(name).lower()}
         labels, column = _core.edge_column(columns, len(self)) or (None, None)
         if column is not None:
@@ -146,7 +144,7 @@ class Cloud:
         return self._predictions == _digest(self._own_labels())
 
     def _truth_of_result(self):
-        columns = {name: _attribute(name, self.attributes[name], len(self))
+        columns = {name: _arrays.attribute(name, self.attributes[name], len(self))
                    for name in _core.TRUTH_COLUMNS + _core.RESULT_COLUMNS if name in self.attributes}
         return _core.truth_of_result([str(line) for line in self.comments], columns, self._own_labels())
 
@@ -189,8 +187,29 @@ class Cloud:
         InsufficientError
             There are no faces, or they have no area.
         """
-        parts = _core.sample_faces(_parts_of(self), _arrays.whole(points, "points", 1), _arrays.seed(seed))
+        parts = _core.sample_faces(self._parts(), _arrays.whole(points, "points", 1), _arrays.seed(seed))
         return Cloud._of(parts, self.name)
+
+    def _parts(self):
+        """As the extension takes a cloud."""
+        rows, attributes = len(self), {}
+        for name, values in self.attributes.items():
+            array = _arrays.attribute(name, values, rows)
+            attributes[str(name)] = array if name in self._wide else _arrays.narrowed(array)
+        corrected = self._corrected()
+        if corrected is not None:  # as labels alone, a reader of the file would take them for predictions
+            attributes[PAINTED] = corrected
+            for name in {"scalar_edge_class", "edge_class"} & set(attributes):  # what other programs show, and lines reads
+                attributes[name] = corrected.astype(attributes[name].dtype)
+        comments = [str(line) for line in self.comments
+                    if line != _core.ESTIMATED_NORMALS or self._has_estimates()]
+        return {"xyz": _arrays.vectors(self.xyz, "xyz"),
+                "normals": _arrays.optional_vectors(self.normals, "normals", rows),
+                "colours": _arrays.colours(self.colours, rows),
+                "labels": self._own_labels(),
+                "attributes": attributes, "comments": comments,
+                "scanners": _arrays.vectors(self.scanners, "scanners"),
+                "kept": self._kept if rows == self._kept_rows else None, "is_float32": self._is_float32}
 
     def viewpoint(self):
         """The scanner position of each point, (n, 3) float64 with NaN where unknown; None if no
@@ -237,6 +256,7 @@ class Cloud:
 
 
 _CHANGED = b""  # no labels have this digest
+PAINTED = _core.TRUTH_COLUMNS[0]
 
 
 def _digest(*arrays):
@@ -263,189 +283,3 @@ def points_of(xyz, normals=None, viewpoint=None, estimates=True, tells_of_faces=
         is_float32, positions = _arrays.is_float32(array), _arrays.vectors(array, "xyz")
     return (positions, is_float32, _arrays.optional_vectors(normals, "normals", len(positions)),
             _arrays.scanners(viewpoint, len(positions)))
-
-
-def existing(path):
-    path = os.fsdecode(path)
-    if not os.path.exists(path):
-        raise MissingFileError(f"{path}: no such file")
-    return path
-
-
-def read(path):
-    """Read a point file: PLY, PCD, OBJ, OFF, STL, LAS, LAZ, COPC, E57, PTX or text.
-
-    Parameters
-    ----------
-    path : str or path-like
-
-    Returns
-    -------
-    Cloud
-        In the order of the file. Normals are made unit, ``(0, 0, 0)`` where unusable.
-
-    Raises
-    ------
-    MissingFileError
-        There is no such file.
-    UnreadableError
-        It is truncated or not of a known format; the message has the line or byte.
-    InsufficientError
-        It does not hold points with x, y and z.
-
-    Warns
-    -----
-    PcednetWarning
-        Remarks of the reader, such as positions that are not finite.
-    """
-    path = existing(path)
-    parts, notes = _core.read(path)
-    _arrays.warn(f"{path}: {note}" for note in notes)
-    return Cloud._of(parts, os.path.splitext(os.path.basename(path))[0])
-
-
-_PAINTED = _core.TRUTH_COLUMNS[0]
-
-
-def _attribute(name, values, rows):
-    """The numbers of an attribute, of a type that files have."""
-    array = _arrays.numbers(values, f"attribute {name}")
-    if array.ndim not in (1, 2) or len(array) != rows:
-        raise UsageError(f"attribute {name}: shape ({rows},) or ({rows}, k) is needed, not {array.shape}")
-    wanted = {"b": np.dtype(np.uint8)}.get(array.dtype.kind, array.dtype.newbyteorder("="))
-    wanted = np.dtype(np.float32) if wanted == np.float16 else wanted
-    return np.require(array, wanted, ["C", "A"])
-
-
-def _is_wide(array):
-    return array.dtype.kind in "iu" and array.dtype.itemsize == 8
-
-
-def _narrowed(array):
-    """Integers of 64 bits, which numpy makes by itself, in 32 if they fit: PLY has none of 64, but two columns."""
-    if not _is_wide(array):
-        return array
-    narrow = np.int32 if array.dtype.kind == "i" else np.uint32
-    fits = array.size == 0 or (np.iinfo(narrow).min <= array.min() and array.max() <= np.iinfo(narrow).max)
-    return array.astype(narrow) if fits else array
-
-
-def _parts_of(cloud):
-    rows = len(cloud)
-    colours = cloud.colours
-    if colours is not None:
-        colours = _arrays.numbers(colours, "colours")
-        if colours.dtype != np.uint8 or colours.shape != (rows, 3):
-            raise UsageError(f"colours: uint8 of shape ({rows}, 3) are needed, not {colours.dtype} "
-                             f"of {colours.shape}")
-        colours = np.require(colours, requirements=["C", "A"])
-    attributes = {str(name): _attribute(name, values, rows) for name, values in cloud.attributes.items()}
-    attributes = {name: values if name in cloud._wide else _narrowed(values) for name, values in attributes.items()}
-    corrected = cloud._corrected()
-    if corrected is not None:  # as labels alone, a reader of the file would take them for predictions
-        attributes[_PAINTED] = corrected
-        for name in {"scalar_edge_class", "edge_class"} & set(attributes):  # what other programs show, and lines reads
-            attributes[name] = corrected.astype(attributes[name].dtype)
-    comments = [str(line) for line in cloud.comments
-                if line != _core.ESTIMATED_NORMALS or cloud._has_estimates()]
-    return {"xyz": _arrays.vectors(cloud.xyz, "xyz"),
-            "normals": _arrays.optional_vectors(cloud.normals, "normals", rows),
-            "colours": colours,
-            "labels": cloud._own_labels(),
-            "attributes": attributes, "comments": comments,
-            "scanners": _arrays.vectors(cloud.scanners, "scanners"),
-            "kept": cloud._kept if rows == cloud._kept_rows else None, "is_float32": cloud._is_float32}
-
-
-def write(path, xyz, result=None, *, normals=None, colours=None, labels=None, attributes=None,
-          class_colours=False, ascii=False, overwrite=False):
-    """Write a point file in the format of its extension: .ply, .pcd, .las, .laz, .copc.laz, .obj,
-    .xyz, .txt, .asc, .pts or .csv.
-
-    The file appears under its name only when it is complete.
-
-    Parameters
-    ----------
-    path : str or path-like
-    xyz : Cloud or array_like, (n, 3)
-        The points. A Cloud that was read keeps everything that its file held, coordinates bit for
-        bit. From an array, float32 coordinates are written as float32, others as float64. Labels that were
-        changed in a result since it was read are true: they are written as ``scalar_painted_label``, too.
-    result : Result, optional
-        Adds class and probabilities, under the names that ``pcednet classify`` gives them.
-    normals, colours, labels, attributes : optional
-        With an array of points: as in Cloud.
-    class_colours : bool
-        Colour the points by class even if they have colours.
-    ascii : bool
-        Numbers as text in formats that have both.
-    overwrite : bool
-        Replace an existing file.
-
-    Raises
-    ------
-    ExistsError
-        The file exists and `overwrite` is False.
-    UsageError
-        Another extension, or arrays that do not fit together.
-    FailureError
-        The disk is full, or the folder is missing.
-
-    Warns
-    -----
-    PcednetWarning
-        Data that the format cannot hold. Changed labels replace some that were painted.
-    """
-    if isinstance(xyz, Cloud):
-        if any(part is not None for part in (normals, colours, labels, attributes)):
-            raise UsageError("write: set the fields of the Cloud instead")
-        cloud = xyz
-    else:
-        cloud = Cloud(xyz, normals, colours, labels, attributes)
-    parts = None
-    if result is not None:
-        _arrays.check_result(result, len(cloud))
-        parts = result._parts()
-    path, written = os.fsdecode(path), _parts_of(cloud)
-    losses = _core.write(path, written, parts, bool(class_colours), bool(ascii), bool(overwrite))
-    _arrays.warn(f"{path} does not keep: {loss}" for loss in losses)
-    painted = np.asarray(cloud.attributes.get(_PAINTED, ()))
-    if (painted == 255).any() and (painted != 255).any() and not np.array_equal(
-            painted, written["attributes"][_PAINTED]):
-        _arrays.warn([f"{path}: the labels, which were changed since the cloud was read, replace its {_PAINTED}"])
-
-
-def generate(name="default", seed=1, only=""):
-    """Labelled clouds of generated shapes, those that the shipped models are trained on.
-
-    Parameters
-    ----------
-    name : {'default', 'cad', 'worn', 'scan', 'varied', 'sparse', 'drawn', 'pieces', 'lines', 'sample'}
-        The set, as in ``pcednet generate``; ``'sample'`` is the building of the demo.
-    seed : int
-    only : str
-        Only the clouds with this in their names.
-
-    Yields
-    ------
-    Cloud
-        With ``name``, ``labels``, mostly ``normals``, and the true edges as ``curves``. Each is
-        made when it is asked for.
-
-    Raises
-    ------
-    UsageError
-        There is no such set, or no such cloud in it.
-    """
-    recipes = [recipe for recipe in _core.recipes(_arrays.text(name, "name"), _arrays.seed(seed))
-               if only in recipe.name]
-    if not recipes:
-        raise UsageError(f"generate: no cloud of {name} has {only!r} in its name")
-    return (_made(recipe) for recipe in recipes)
-
-
-def _made(recipe):
-    parts, curves = recipe.make()
-    cloud = Cloud._of(parts, recipe.name)
-    cloud.curves = curves
-    return cloud

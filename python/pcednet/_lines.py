@@ -5,7 +5,7 @@ import os
 
 import numpy as np
 
-from . import _arrays, _clouds, _core
+from . import _arrays, _clouds, _core, _files
 from ._classify import Result, classify, worded
 from .errors import UsageError
 
@@ -218,7 +218,7 @@ def read_lines(path):
     InsufficientError
         It has points but no lines.
     """
-    return Lines(_core.read_curves(_clouds.existing(path)))
+    return Lines(_core.read_curves(_files.existing(path)))
 
 
 def _probability(cloud, name):

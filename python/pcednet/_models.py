@@ -6,7 +6,7 @@ import tempfile
 
 import numpy as np
 
-from . import _arrays, _classify, _clouds, _core, _onnx, _train
+from . import _arrays, _classify, _core, _files, _onnx, _train
 from .errors import UsageError
 
 _SHIPPED = pathlib.Path(__file__).parent / "models"
@@ -77,7 +77,7 @@ class Model:
         if not os.path.isfile(name) and shipped.exists():
             return cls(_core.EdgeModel(shipped))
         try:
-            return cls(_core.EdgeModel(_clouds.existing(name)))
+            return cls(_core.EdgeModel(_files.existing(name)))
         except FileNotFoundError as error:
             raise type(error)(f"{os.fsdecode(name)}: neither a file nor a shipped model "
                               f"({', '.join(shipped_models())})") from None

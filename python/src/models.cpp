@@ -5,6 +5,7 @@
 
 #include "arrays.h"
 #include "bindings.h"
+#include "named.h"
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/cloud_kind.h"
@@ -27,12 +28,11 @@ gls::FeatureSet feature_set_of(int count) {
 }
 
 gls::Reconstruction reconstruction_named(const std::string& name) {
-  if (const auto found = gls::reconstruction_of(name)) return *found;
-  std::string names;
+  std::vector<std::pair<std::string_view, gls::Reconstruction>> all;
   for (const std::string_view known : gls::reconstruction_names()) {
-    names += (names.empty() ? "" : ", ") + std::string(known);
+    all.emplace_back(known, *gls::reconstruction_of(known));
   }
-  throw Error(ErrorKind::kUsage, "reconstruction \"" + name + "\": there are " + names);
+  return named(all, "reconstruction", name);
 }
 
 /// The keyword arguments of describe().

@@ -9,7 +9,7 @@ namespace pcednet::python {
 namespace {
 
 /// Normals of a cloud: new ones, or the given ones with new signs; facing the scanners where these
-/// are known. Also returns the number of neighbours for their estimation.
+/// are known. Also returns the number of points without one.
 py::tuple make_normals(const Array<double>& xyz, const OptionalArray<double>& given,
                        const OptionalArray<double>& scanners, int neighbours,
                        const py::object& progress, int threads) {
@@ -22,7 +22,7 @@ py::tuple make_normals(const Array<double>& xyz, const OptionalArray<double>& gi
                  : normals::estimate_oriented_normals(positions, options, job);
     if (scanners) normals::face_viewpoints(positions, made.normals, vectors(scanners));
   });
-  return py::make_tuple(give(std::move(made.normals)), made.choice.neighbours, made.unusable);
+  return py::make_tuple(give(std::move(made.normals)), made.unusable);
 }
 
 }  // namespace

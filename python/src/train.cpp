@@ -73,11 +73,9 @@ void prepare(const std::vector<LabelledArrays>& arrays, bool keep_orientation,
 
 detect::TrainOptions training_options_of(const py::dict& settings) {
   detect::TrainOptions options;
-  const auto recipe = settings["recipe"].cast<std::string>();
-  if (recipe != "adam" && recipe != "paper") {
-    throw Error(ErrorKind::kUsage, "recipe \"" + recipe + "\": there are adam, paper");
-  }
-  if (recipe == "paper") options.training = nn::paper_recipe();
+  constexpr std::pair<std::string_view, bool> kRecipes[] = {{"adam", false}, {"paper", true}};
+  const bool is_paper = named(kRecipes, "recipe", settings["recipe"].cast<std::string>());
+  if (is_paper) options.training = nn::paper_recipe();
   options.descriptor = descriptor_of(settings["descriptor"]);
   options.architecture.kind =
       named(nn::kNetworkKinds, "network", settings["network"].cast<std::string>());
