@@ -8,11 +8,15 @@ import type { Stage } from "./stage";
 import { activeClip, type AppStore } from "./store";
 import { NO_CLASS, type BrushStroke, type Session } from "./types";
 
-/** The radius of the smallest brush. */
-export const LEAST_SPACINGS = 0.5;
+type Known = Pick<Session, "spacing" | "bounds">;
 
-export const usableRadius = (radius: number, { spacing, bounds }: Pick<Session, "spacing" | "bounds">): number =>
-  Math.min(Math.max(radius, spacing * LEAST_SPACINGS), boxDiagonal(bounds) / 4);
+/** The radii of the smallest and the largest brush. */
+export const brushRange = ({ spacing, bounds }: Known): [number, number] => [spacing * 0.5, boxDiagonal(bounds) / 4];
+
+export function usableRadius(radius: number, session: Known): number {
+  const [low, high] = brushRange(session);
+  return Math.min(Math.max(radius, low), high);
+}
 
 export class Brush {
   /** As it was when the stroke began: what is set meanwhile is for the next one. */

@@ -2,7 +2,8 @@
 
 import { BOUNDARY, type Meaning } from "../shared/colours";
 import { h } from "../shared/dom";
-import { refusalOf, type Client } from "./client";
+import type { Client } from "./client";
+import { refusalOf } from "./refusal";
 import type { Saved } from "./files";
 import { NONE, paintable, paletteOf } from "./classes";
 import { fileClassesOf, isRamp, rampEnds, rampStops, FEATURE_NAMES } from "./colouring";

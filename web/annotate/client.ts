@@ -6,8 +6,10 @@ import { paintable, usableClass, type WantedClass } from "./classes";
 import { Files } from "./files";
 import { modesOf, PREDICTED } from "./commands";
 import { LineClient } from "./line_client";
+import { NOTHING_PAINTED, refusalOf } from "./refusal";
 import type { Stage } from "./stage";
-import type { AppStore, State } from "./store";
+import type { AppStore } from "./store";
+import { withEpoch } from "./training";
 import type {
   DecidedEvent,
   Classes,
@@ -19,31 +21,17 @@ import type {
   Settings,
   Stroke,
   TrainingEvent,
-  Uncertain,
 } from "./types";
+import { UncertainClient } from "./uncertain_client";
 import { resumed, viewOf, type CloudView } from "./views";
-import { ask } from "./words";
+import { ask, type Words } from "./words";
 import { LONGEST_PAUSE_MS, pause, WorkQueue } from "./work";
-
-export const READ_ONLY = "Another window is painting this cloud. Take over to paint here.";
-
-const NOTHING_PAINTED = `${NO_ANSWER}: nothing can be painted.`;
-
-/** Why this window cannot paint now; empty if it can. */
-export const refusalOf = ({ writer, connected }: Pick<State, "writer" | "connected">): string =>
-  !connected ? NOTHING_PAINTED : writer ? "" : READ_ONLY;
-
-export interface Words {
-  say(text: string): void;
-  warn(text: string): void;
-  /** Takes back what is no longer so. */
-  unsay(text: string): void;
-}
 
 export class Client {
   private readonly queue: WorkQueue;
   readonly lines: LineClient;
   readonly files: Files;
+  readonly uncertain: UncertainClient;
   private events: EventSource | null = null;
   private opened = false;
   /** Of any cloud: what the user chose since then stays. */
@@ -62,8 +50,6 @@ export class Client {
   private described = "";
   /** The last look at the session, done or not. */
   private looked: Promise<void> = Promise.resolve();
-  /** The last step to an uncertain place, likewise. */
-  private stepped: Promise<Uncertain | null> = Promise.resolve(null);
   /** Of the clouds that were looked at before. */
   private readonly views = new Map<number, CloudView>();
   stage!: Stage;
@@ -77,6 +63,7 @@ export class Client {
   ) {
     this.lines = new LineClient(api, store, words, () => this.mayPaint(), ask);
     this.files = new Files(api, store, words);
+    this.uncertain = new UncertainClient(api, store, words);
     this.queue = new WorkQueue(api, {
       painted: (answer, kind) => {
         this.takePainted(answer);
@@ -164,7 +151,7 @@ export class Client {
       },
       ready: () => this.attempt(this.ask()),
       labels: (answer: Painted) => this.takePainted(answer),
-      training: (event: TrainingEvent) => this.takeTraining(event),
+      training: (event: TrainingEvent) => store.set({ training: withEpoch(store.now.training, event) }),
       prediction: (event: PredictionEvent) => this.attempt(this.takePrediction(event)),
       judged: () => this.attempt(this.refreshRuns()),
       classes: (event: Classes) => {
@@ -327,22 +314,6 @@ export class Client {
     if (answer.cloud === store.now.cloud) this.stage.loader.refresh("labels", answer.nodes);
   }
 
-  private takeTraining(event: TrainingEvent): void {
-    const old = this.store.now.training;
-    const same = old !== null && old.active && old.run === event.run && event.epoch > (old.epoch.at(-1) ?? 0);
-    const before = same ? old : { epoch: [], loss: [], context: [] };
-    this.store.set({
-      training: {
-        run: event.run,
-        active: true,
-        epochs: event.epochs,
-        epoch: [...before.epoch, event.epoch],
-        loss: [...before.loss, event.context ? null : event.loss],
-        context: [...before.context, event.context ? event.loss : null],
-      },
-    });
-  }
-
   private async takePrediction(event: PredictionEvent): Promise<void> {
     const { store } = this;
     const first = !store.now.hasPrediction;
@@ -438,25 +409,5 @@ export class Client {
 
   takeOver(): void {
     this.attempt(this.paintHere());
-  }
-
-  /** The next place where the network is unsure, or the one before, round and round. One step after another: two at a
-   *  time would lead to the same place. */
-  stepUncertain(by: 1 | -1): Promise<Uncertain | null> {
-    this.stepped = this.stepped.then(() => this.takeStep(by));
-    return this.stepped;
-  }
-
-  private async takeStep(by: 1 | -1): Promise<Uncertain | null> {
-    const last = this.store.now.uncertain;
-    const after = last ? (last.rank - 1 + by + last.of) % last.of : 0;
-    try {
-      const place = await this.api.get<Uncertain>(`/api/uncertain?after=${after}`);
-      this.store.set({ uncertain: place });
-      return place;
-    } catch (error) {
-      this.words.warn((error as Error).message);
-      return null;
-    }
   }
 }

@@ -2,7 +2,7 @@
 
 import { h } from "../shared/dom";
 import { ApiError, type Api } from "./api";
-import type { Words } from "./client";
+import type { Words } from "./words";
 import type { AppStore } from "./store";
 
 export type Saved = "cloud" | "model" | "project" | "lines";

@@ -1,7 +1,7 @@
 // Keeps the lines of the cloud in view, and the decisions on them, in step with the server's.
 
 import type { Api } from "./api";
-import type { Words } from "./client";
+import type { Words } from "./words";
 import { decided, DecisionQueue } from "./decisions";
 import { count, searchText } from "./format";
 import type { AppStore, State } from "./store";

@@ -1,12 +1,13 @@
 import "../shared/theme.css";
 import "../shared/controls.css";
 import "./style.css";
-import { h } from "../shared/dom";
+import { css, h } from "../shared/dom";
 import { Api } from "./api";
 import { Brush } from "./brush";
 import { curtain, header, hint, legend, presser, toolbar } from "./chrome";
 import { ClipHandles, stepped } from "./clip_handles";
-import { Client, refusalOf } from "./client";
+import { Client } from "./client";
+import { refusalOf } from "./refusal";
 import type { Saved } from "./files";
 import { appearanceOf, paintColour, strokesOf, valuesQuery } from "./colouring";
 import { bindKeys, commandsOf } from "./commands";
@@ -26,8 +27,6 @@ import { Reviewer } from "./reviewer";
 import { Stage } from "./stage";
 import { activeClip, initialState, Store, type State } from "./store";
 import { ask, helpDialog, Notices } from "./words";
-
-const css = (name: string): string => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 /** How near the view goes to an uncertain place. */
 const VISIT_SPACINGS = 100;
@@ -87,7 +86,7 @@ function open(page: HTMLElement): void {
     window.setTimeout(() => URL.revokeObjectURL(address), 10_000);
   };
   const stepUncertain = async (by: 1 | -1): Promise<void> => {
-    const place = await client.stepUncertain(by);
+    const place = await client.uncertain.step(by);
     const { session } = store.now;
     if (!place || !session) return;
     stage.camera.visit(place.position, place.normal, stage.camera.nearby(session.spacing * VISIT_SPACINGS));
@@ -166,9 +165,10 @@ function open(page: HTMLElement): void {
     help.element,
   );
 
+  const repaint = (): void => stage.setAppearance(appearanceOf(store.now, css("--stage")));
   store.watch(
     ["mode", "paintOnTop", "safePalette", "hidden", "clip", "pointSize", "eyeDome", "classes", "edges", "session"],
-    () => stage.setAppearance(appearanceOf(store.now, css("--stage"))),
+    repaint,
   );
   store.watch(["mode", "feature", "scale"], () => stage.loader.setValues(valuesQuery(store.now)));
   store.watch(["lines", "line", "showLines", "safePalette", "session"], () =>
@@ -176,7 +176,6 @@ function open(page: HTMLElement): void {
   );
   store.watch(["clip"], () => overlay.setClip(activeClip(store.now)));
   store.watch(["uncertain"], () => overlay.setMark(store.now.uncertain?.position ?? null));
-  const repaint = (): void => stage.setAppearance(appearanceOf(store.now, css("--stage")));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
   store.watch(["theme"], () => {
     document.documentElement.dataset.theme = store.now.theme;

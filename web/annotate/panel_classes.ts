@@ -1,11 +1,10 @@
 // The classes: which one is painted, how many points have it, which are hidden; and the brush.
 
 import { h } from "../shared/dom";
-import { LEAST_SPACINGS, type Brush } from "./brush";
-import { refusalOf } from "./client";
+import { brushRange, type Brush } from "./brush";
+import { refusalOf } from "./refusal";
 import { isOff, paintable, paletteOf } from "./classes";
 import { toggled } from "./commands";
-import { boxDiagonal } from "./geometry";
 import { count, length } from "./format";
 import { icon } from "./icons";
 import { fileStrokes } from "./file_classes";
@@ -80,7 +79,7 @@ export function classesPanel(store: AppStore, brush: Brush, edit: () => void, ta
   const size = slider("Brush", 0, 1, 0.001, (at) => {
     const { session } = store.now;
     if (!session) return;
-    const [low, high] = [session.spacing * LEAST_SPACINGS, boxDiagonal(session.bounds) / 4];
+    const [low, high] = brushRange(session);
     brush.grow((low * (high / low) ** at) / store.now.radius);
   });
   const protect = checkbox("Protect painted points", "P", (on) => store.set({ protect: on }));
@@ -90,7 +89,7 @@ export function classesPanel(store: AppStore, brush: Brush, edit: () => void, ta
     protect.set(store.now.protect);
     front.set(store.now.frontOnly);
     if (!session) return;
-    const [low, high] = [session.spacing * LEAST_SPACINGS, boxDiagonal(session.bounds) / 4];
+    const [low, high] = brushRange(session);
     size.set(Math.log(radius / low) / Math.log(high / low), length(radius));
   });
   const change = button("Classes…", edit, "⇧E");

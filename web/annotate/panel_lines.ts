@@ -3,7 +3,8 @@
 import { BOUNDARY, CLASS_PALETTES } from "../shared/colours";
 import { h } from "../shared/dom";
 import type { Press } from "./chrome";
-import { refusalOf, type Client } from "./client";
+import type { Client } from "./client";
+import { refusalOf } from "./refusal";
 import { count, length, percent } from "./format";
 import { allow, button, buttons, checkbox, section, showOnly } from "./panel";
 import { countDecisions, type Reviewer } from "./reviewer";

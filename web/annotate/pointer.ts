@@ -5,7 +5,7 @@ import { Fingers } from "./fingers";
 import type { Outline } from "./outline";
 import type { Overlay } from "./overlay";
 import type { Stage } from "./stage";
-import { refusalOf } from "./client";
+import { refusalOf } from "./refusal";
 import type { AppStore } from "./store";
 import type { Vec3 } from "./types";
 

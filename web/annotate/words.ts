@@ -8,7 +8,14 @@ export const readingMs = (text: string): number => Math.min(2500 + 45 * text.len
 
 const LOOKED_AT_MS = 1000;
 
-export class Notices {
+export interface Words {
+  say(text: string): void;
+  warn(text: string): void;
+  /** Takes back what is no longer so. */
+  unsay(text: string): void;
+}
+
+export class Notices implements Words {
   readonly element = h("div", { class: "notices", "aria-live": "polite" });
 
   say(text: string): void {

@@ -74,3 +74,6 @@ export function dropdown<T>(label: string, choices: Choice<T>[], chosen: T, onCh
   );
   return h("label", { class: "dropdown" }, h("span", {}, label), list);
 }
+
+/** What a custom property such as --ink is now. */
+export const css = (name: string): string => getComputedStyle(document.documentElement).getPropertyValue(name).trim();

@@ -3,7 +3,7 @@
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import "./lines.css";
-import { h } from "./dom";
+import { css, h } from "./dom";
 
 export interface Line {
   name: string;
@@ -41,8 +41,6 @@ function extent(lines: Line[]): [number, number] {
 }
 
 const score = (v: number): string => String(Number(v.toPrecision(6))).replace(/^(-?)0\./, "$1.");
-
-const css = (name: string): string => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 function drawErrors(lines: Line[]): uPlot.Plugin {
   return {
