@@ -225,9 +225,10 @@ std::vector<Exhibit> choose_exhibits(const Studies& studies, const fs::path& fol
       const auto set_name = set["name"].get<std::string>();
       std::size_t shown = 0;
       for (const OrderedJson& cloud : set["clouds"]) {
+        if (shown == clouds_per_set) break;
         const auto name = cloud["name"].get<std::string>();
         auto sources = sources_in(study, number, set_name, name, folder);
-        if (sources.empty() || shown == clouds_per_set) continue;
+        if (sources.empty()) continue;
         ++shown;
         const auto file =
             find_cloud(cloud["file"].get<std::string>(), folder, studies.files[number]);
