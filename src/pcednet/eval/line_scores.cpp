@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <unordered_set>
 
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
@@ -133,11 +134,10 @@ Coverage coverage_of(const Samples& truth, std::size_t curve, const Samples& fou
   std::vector<spatial::Neighbour> near;
   for (std::size_t i = truth.first[curve]; i < truth.first[curve + 1]; ++i) {
     tree.within(truth.positions[i], kNear, near);  // the nearest first
-    std::vector<std::uint32_t> seen;
+    std::unordered_set<std::uint32_t> seen;
     for (const auto& neighbour : near) {
       const std::uint32_t line = found.curve[neighbour.index];
-      if (std::find(seen.begin(), seen.end(), line) != seen.end()) continue;
-      seen.push_back(line);
+      if (!seen.insert(line).second) continue;
       ++coverage.near[line];
       const double least = std::sqrt(near.front().sq_distance);
       if (std::sqrt(neighbour.sq_distance) < least + kSamePlace) ++coverage.nearest[line];
