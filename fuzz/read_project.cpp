@@ -29,7 +29,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   };
   try_to([&] { annotate::parse_stroke(text); });
   try_to([&] { annotate::parse_decision(text); });
-  try_to([&] { annotate::parse_cloud(text); });
+  try_to([&] { annotate::parse_lines_search(text); });
   try_to([&] { annotate::parse_save(text); });
   try_to([&] { annotate::parse_classes_change(text); });
   try_to([&] { annotate::parse_settings_change(text); });

@@ -113,7 +113,7 @@ export interface Session extends Classes {
   strokes: number;
   undo: number;
   redo: number;
-  run: Run | number | null;
+  run: Run | null;
   writer: boolean;
   /** Strokes are newer than the current run. */
   out_of_date: boolean;

@@ -39,14 +39,11 @@ std::string error_json(const std::string& message);
 std::string event_name(const Event& event);
 std::string event_json(const Event& event);
 
-/// Reads a stroke. Throws Error(kUsage), naming the fault.
-Stroke parse_stroke(std::string_view json);
-
-/// Whether a search for lines is for boundaries, too. Throws Error(kUsage) unless it is a boolean.
-bool parse_boundaries(std::string_view json);
-
-/// Throws Error(kUsage), naming the fault.
-LinesDecided parse_decision(std::string_view json);
+/// A request for the lines of a cloud.
+struct LinesSearch {
+  std::size_t cloud = 0;
+  bool boundaries = false;  ///< too
+};
 
 /// A request to save; an empty name means the default name.
 struct SaveRequest {
@@ -55,10 +52,10 @@ struct SaveRequest {
   bool overwrite = false;
 };
 
-/// The cloud that a request names; 0 if it names none. Throws Error(kUsage).
-std::size_t parse_cloud(std::string_view json);
-
-/// Throws Error(kUsage), naming the fault.
+// Requests; a cloud that is not named is the first. These throw Error(kUsage), naming the fault.
+Stroke parse_stroke(std::string_view json);
+LinesSearch parse_lines_search(std::string_view json);
+LinesDecided parse_decision(std::string_view json);
 SaveRequest parse_save(std::string_view json);
 
 }  // namespace pcednet::annotate

@@ -1,9 +1,6 @@
-#include <fmt/format.h>
-
 #include <array>
 #include <numbers>
 
-#include "pcednet/core/error.h"
 #include "pcednet/core/json.h"
 #include "workbench/annotate/json.h"
 
@@ -35,13 +32,6 @@ Json line_of(const lines::Curve& curve, Decision decision, const Scene& scene) {
           {"path", std::move(path)}};
 }
 
-Decision decision_of(const std::string& name) {
-  for (std::size_t i = 0; i < kDecisions.size(); ++i) {
-    if (name == kDecisions[i]) return static_cast<Decision>(i);
-  }
-  throw Error(ErrorKind::kUsage, "decision: open, accepted or rejected");
-}
-
 }  // namespace
 
 const char* decision_name(Decision decision) {
@@ -59,26 +49,6 @@ std::string to_json(const LinesView& view) {
     json["lines"].push_back(line_of((*review.curves)[i], review.decisions[i], *view.scene));
   }
   return to_text(json);
-}
-
-bool parse_boundaries(std::string_view text) {
-  try {
-    return parse_json(text).value("boundaries", false);
-  } catch (const Json::exception& error) {
-    throw Error(ErrorKind::kUsage, fmt::format("boundaries: {}", error.what()));
-  }
-}
-
-LinesDecided parse_decision(std::string_view text) {
-  try {
-    const Json json = parse_json(text);
-    return {.version = json.at("version").get<int>(),
-            .decision = decision_of(json.at("decision").get<std::string>()),
-            .lines = json.at("lines").get<std::vector<std::uint32_t>>(),
-            .cloud = parse_cloud(text)};
-  } catch (const Json::exception& error) {
-    throw Error(ErrorKind::kUsage, fmt::format("decide: {}", error.what()));
-  }
 }
 
 }  // namespace pcednet::annotate

@@ -86,7 +86,7 @@ void read_polygon(const Json& json, Stroke& stroke) {
   }
 }
 
-Stroke read(const Json& json) {
+Stroke read_stroke(const Json& json) {
   need(json.is_object(), "an object is wanted");
   Stroke stroke;
   stroke.id = json.at("id").get<std::string>();
@@ -115,34 +115,51 @@ Stroke read(const Json& json) {
   return stroke;
 }
 
-}  // namespace
+Decision decision_of(const std::string& name) {
+  for (const Decision decision : {Decision::kOpen, Decision::kAccepted, Decision::kRejected}) {
+    if (name == decision_name(decision)) return decision;
+  }
+  throw Error(ErrorKind::kUsage, "decision: open, accepted or rejected");
+}
 
-Stroke parse_stroke(std::string_view text) {
+/// What `read` makes of the request; its errors begin with `what`.
+template <typename Read>
+auto parsed(std::string_view text, const char* what, const Read& read) {
   try {
     return read(parse_json(text));
   } catch (const Json::exception& error) {
-    throw Error(ErrorKind::kUsage, fmt::format("stroke: {}", error.what()));
+    throw Error(ErrorKind::kUsage, fmt::format("{}: {}", what, error.what()));
   }
 }
 
-std::size_t parse_cloud(std::string_view text) {
-  try {
-    return cloud_in(parse_json(text));
-  } catch (const Json::exception& error) {
-    throw Error(ErrorKind::kUsage, fmt::format("cloud: {}", error.what()));
-  }
+}  // namespace
+
+Stroke parse_stroke(std::string_view text) {
+  return parsed(text, "stroke", read_stroke);
+}
+
+LinesSearch parse_lines_search(std::string_view text) {
+  return parsed(text, "lines", [](const Json& json) -> LinesSearch {
+    return {.cloud = cloud_in(json), .boundaries = json.value("boundaries", false)};
+  });
+}
+
+LinesDecided parse_decision(std::string_view text) {
+  return parsed(text, "decide", [](const Json& json) -> LinesDecided {
+    return {.version = json.at("version").get<int>(),
+            .decision = decision_of(json.at("decision").get<std::string>()),
+            .lines = json.at("lines").get<std::vector<std::uint32_t>>(),
+            .cloud = cloud_in(json)};
+  });
 }
 
 SaveRequest parse_save(std::string_view text) {
-  try {
-    const Json json = parse_json(text);
+  return parsed(text, "save", [](const Json& json) -> SaveRequest {
     return {.what = json.at("what").get<std::string>(),
             .name = json.value("name", std::string()),
             .cloud = cloud_in(json),
             .overwrite = json.value("overwrite", false)};
-  } catch (const Json::exception& error) {
-    throw Error(ErrorKind::kUsage, fmt::format("save: {}", error.what()));
-  }
+  });
 }
 
 }  // namespace pcednet::annotate

@@ -4,10 +4,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <string_view>
+#include <utility>
 
 #include "pcednet/core/error.h"
 #include "workbench/annotate/json.h"
@@ -61,26 +64,32 @@ std::size_t cloud_of(const Call& call) {
   return asked_number<std::size_t>(call, "cloud");
 }
 
-Saved saved_of(const std::string& what) {
-  if (what == "cloud") return Saved::kCloud;
-  if (what == "model") return Saved::kModel;
-  if (what == "project") return Saved::kProject;
-  if (what == "lines") return Saved::kLines;
-  throw Error(ErrorKind::kUsage, "what: cloud, model, project or lines");
-}
+template <typename Value, std::size_t kCount>
+using Names = std::array<std::pair<std::string_view, Value>, kCount>;
 
-Shown shown_of(const std::string& of) {
-  if (of == "labels") return Shown::kLabels;
-  if (of == "prediction") return Shown::kPrediction;
-  if (of == "confidence") return Shown::kConfidence;
-  if (of == "p_sharp") return Shown::kPSharp;
-  if (of == "feature") return Shown::kFeature;
-  if (of == "file_labels") return Shown::kFileLabels;
-  if (of == "las_classes") return Shown::kLasClasses;
-  if (of == "errors") return Shown::kErrors;
-  throw Error(ErrorKind::kUsage,
-              "of: labels, prediction, confidence, p_sharp, feature, file_labels, las_classes "
-              "or errors");
+constexpr Names<Saved, 4> kSaved = {{{"cloud", Saved::kCloud},
+                                     {"model", Saved::kModel},
+                                     {"project", Saved::kProject},
+                                     {"lines", Saved::kLines}}};
+constexpr Names<Shown, 8> kShown = {{{"labels", Shown::kLabels},
+                                     {"prediction", Shown::kPrediction},
+                                     {"confidence", Shown::kConfidence},
+                                     {"p_sharp", Shown::kPSharp},
+                                     {"feature", Shown::kFeature},
+                                     {"file_labels", Shown::kFileLabels},
+                                     {"las_classes", Shown::kLasClasses},
+                                     {"errors", Shown::kErrors}}};
+
+/// The value of that name; the error lists all.
+template <typename Value, std::size_t kCount>
+Value named(const Names<Value, kCount>& values, const char* what, std::string_view name) {
+  std::string known;
+  for (const auto& [its_name, value] : values) {
+    if (its_name == name) return value;
+    const bool is_last = its_name == values.back().first;
+    known += fmt::format("{}{}", known.empty() ? "" : is_last ? " or " : ", ", its_name);
+  }
+  throw Error(ErrorKind::kUsage, fmt::format("{}: {}", what, known));
 }
 
 /// A header that offers a file. The input's name, of which `name` is made, may hold any bytes.
@@ -131,9 +140,9 @@ Response get_pick(const Call& call) {
 }
 
 Response values_of_nodes(const Call& call, const std::vector<std::size_t>& nodes) {
-  const auto [bytes, version] =
-      call.session.values(shown_of(asked(call, "of")), nodes, asked_number<int>(call, "feature"),
-                          asked_number<int>(call, "scale"), cloud_of(call));
+  const auto [bytes, version] = call.session.values(
+      named(kShown, "of", asked(call, "of")), nodes, asked_number<int>(call, "feature"),
+      asked_number<int>(call, "scale"), cloud_of(call));
   return binary(bytes, {{"X-Version", std::to_string(version)}});
 }
 
@@ -159,11 +168,7 @@ std::string wanted_name(const Call& call, const std::filesystem::path& usual) {
 /// By their names in --dxf-arcs; all if none is named.
 io::DxfArcs wanted_arcs(const Call& call) {
   const std::string name = asked(call, "dxf_arcs");
-  if (name.empty()) return io::DxfArcs::kAll;
-  for (const auto& [known, arcs] : io::kDxfArcs) {
-    if (name == known) return arcs;
-  }
-  throw Error(ErrorKind::kUsage, "dxf_arcs: all, flat or none");
+  return name.empty() ? io::DxfArcs::kAll : named(io::kDxfArcs, "dxf_arcs", name);
 }
 
 Response get_lines(const Call& call) {
@@ -171,7 +176,7 @@ Response get_lines(const Call& call) {
 }
 
 Response get_download(const Call& call) {
-  const Saved what = saved_of(call.name);
+  const Saved what = named(kSaved, "what", call.name);
   const std::size_t cloud = cloud_of(call);
   const auto usual = call.session.target(what, {}, cloud);
   const auto target = call.session.target(what, wanted_name(call, usual), cloud);
@@ -229,8 +234,8 @@ Response change_classes(const Call& call) {
 }
 
 Response find_lines(const Call& call) {
-  const std::string& body = call.request.body;
-  call.session.find_lines(parse_cloud(body), parse_boundaries(body));
+  const auto [cloud, boundaries] = parse_lines_search(call.request.body);
+  call.session.find_lines(cloud, boundaries);
   return json_response("{}");
 }
 
@@ -256,7 +261,7 @@ Response restore(const Call& call) {
 
 Response save(const Call& call) {
   const SaveRequest wanted = parse_save(call.request.body);
-  const Saved what = saved_of(wanted.what);
+  const Saved what = named(kSaved, "what", wanted.what);
   const auto path = call.session.target(what, wanted.name, wanted.cloud);
   const bool overwrite = wanted.overwrite || call.session.options().overwrite;
   std::error_code error;
