@@ -88,6 +88,39 @@ test("takes a stroke in the other cloud back, and says where it was", async () =
   assert.ok((await state("clouds"))[1].painted > 0);
 });
 
+test("paints nothing while another cloud is opened", async () => {
+  await page.keyboard.press("PageDown");
+  await looksAt("roof.ply");
+  await settled();
+  await page.keyboard.press("l");
+  const before = await state("undo");
+  let open;
+  const isOpen = new Promise((done) => (open = done));
+  await page.route(/session\?cloud=1/, async (route) => {
+    await isOpen;
+    await route.continue();
+  });
+  await page.keyboard.press("PageUp");
+  await page.getByText("Opening barn.ply").waitFor();
+  const { x, y, width, height } = await page.locator("canvas").first().boundingBox();
+  const at = (right, down) => page.mouse.move(x + right * width, y + down * height, { steps: 5 });
+  await at(0.1, 0.1);
+  await page.mouse.down();
+  for (const [right, down] of [
+    [0.9, 0.1],
+    [0.9, 0.9],
+    [0.1, 0.9],
+  ])
+    await at(right, down);
+  await page.mouse.up();
+  open();
+  await looksAt("barn.ply");
+  await settled();
+  assert.equal(await state("undo"), before);
+  await page.unroute(/session\?cloud=1/);
+  await page.keyboard.press("b");
+});
+
 /** Looks at the next cloud, or with PageUp at the one before. */
 async function go(key, file) {
   await page.keyboard.press(key);

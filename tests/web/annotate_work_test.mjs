@@ -5,19 +5,21 @@ import { test } from "node:test";
 
 import { load } from "./bundle.mjs";
 
-const { api, brush, commands, files, line_client, preferences, reviewer, store, views, words, work } = await load(
-  "api",
-  "brush",
-  "commands",
-  "files",
-  "line_client",
-  "preferences",
-  "reviewer",
-  "store",
-  "views",
-  "words",
-  "work",
-);
+const { api, brush, commands, files, line_client, preferences, reviewer, store, uncertain_client, views, words, work } =
+  await load(
+    "api",
+    "brush",
+    "commands",
+    "files",
+    "line_client",
+    "preferences",
+    "reviewer",
+    "store",
+    "uncertain_client",
+    "views",
+    "words",
+    "work",
+  );
 
 const turns = () => new Promise((done) => setTimeout(done, 5));
 
@@ -84,6 +86,24 @@ test("quick decisions are on one line after another, and are sent in their order
     ],
   );
   assert.equal(decisions(), "ara");
+});
+
+test("an uncertain place of a cloud that is no longer looked at is not shown", async () => {
+  const page = new store.Store(store.initialState);
+  const warnings = [];
+  const server = { ...byHand(), cloud: 0 };
+  const telling = { say() {}, warn: (text) => warnings.push(text) };
+  const client = new uncertain_client.UncertainClient(server, page, telling);
+  const steps = [client.step(1), client.step(1), client.step(1)];
+  for (const reply of ["answer", "refuse"]) {
+    await turns();
+    server.cloud += 1;
+    server.asked.at(-1)[reply](reply === "answer" ? { rank: 1, of: 9 } : new Error("none"));
+  }
+  await turns();
+  server.asked.at(-1).answer({ rank: 2, of: 5 });
+  assert.deepEqual(await Promise.all(steps), [null, null, { rank: 2, of: 5 }]);
+  assert.deepEqual([page.now.uncertain.rank, warnings], [2, []]);
 });
 
 test("decisions that the program does not take are taken back, with a notice", async () => {

@@ -78,7 +78,8 @@ export class Pointer {
   }
 
   private press(event: PointerEvent): void {
-    if (!this.store.now.session) return;
+    const { session, progress } = this.store.now;
+    if (!session || progress) return; // where another cloud is opened, strokes would be in the last one
     const [x, y] = this.at(event);
     if (event.pointerType === "touch") {
       this.fingers.down(event.pointerId, [x, y]);

@@ -25,12 +25,15 @@ export class UncertainClient {
   private async take(by: 1 | -1): Promise<Uncertain | null> {
     const last = this.store.now.uncertain;
     const after = last ? (last.rank - 1 + by + last.of) % last.of : 0;
+    const { cloud } = this.api;
+    const isElsewhere = (): boolean => cloud !== this.api.cloud; // another one is looked at by now
     try {
       const place = await this.api.get<Uncertain>(`/api/uncertain?after=${after}`);
+      if (isElsewhere()) return null;
       this.store.set({ uncertain: place });
       return place;
     } catch (error) {
-      this.words.warn((error as Error).message);
+      if (!isElsewhere()) this.words.warn((error as Error).message);
       return null;
     }
   }
