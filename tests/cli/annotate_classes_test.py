@@ -143,7 +143,7 @@ class AnnotateClasses(AnnotateTest):
 
     def test_follow_those_of_edges_and_begin_with_the_default_model(self):
         listed = self.folder / "classes.txt"
-        listed.write_text("edges\nhandle=#00aaff\n")
+        listed.write_bytes(b"\xef\xbb\xbfedges\r\nhandle=#00aaff\r\n")  # as Windows writes it
         server, session = self.own("--model", "scan", classes=str(listed))
         self.assertTrue(session["edges"])
         self.assertEqual(session["classes"][4]["name"], "handle")

@@ -131,7 +131,10 @@ std::optional<ClassTable> classes_named(const std::string& given) {
   std::error_code ignored;
   if (!fs::is_regular_file(given, ignored)) return parse_classes(given);
   std::ifstream file(given);
-  return parse_classes(std::string(std::istreambuf_iterator<char>(file), {}));
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // as Windows writes it
+  return parse_classes(text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size())
+                                                        : text);
 }
 
 annotate::SessionOptions session_options(const AnnotateArguments& arguments, const Common& common,
