@@ -115,6 +115,13 @@ class Study(CliTest):
         self.assertEqual((self.folder / "out" / "classes.json").read_bytes(), before)
         self.assertEqual(first.stdout, second.stdout)
 
+    def test_copc_has_the_stem_that_evaluate_gives_it(self):
+        (self.folder / "copc").mkdir()
+        run("convert", self.folder / "test/cube3.ply", "-o", self.folder / "copc/cube3.copc.laz")
+        self.study("methods", "--methods", "ca", "--test", "a=copc")
+        self.assertEqual([c["name"] for c in self.read("methods")["sets"][0]["clouds"]], ["cube3"])
+        run("evaluate", self.folder / "copc", "--predictions", self.folder / "out/predictions/methods/ca/a")
+
     def test_another_program_classifies_anew(self):
         other = self.folder / "other"
         other.write_bytes(pathlib.Path(PROGRAM).read_bytes() + b"\0")

@@ -20,6 +20,7 @@
 #include "number_options.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/json.h"
+#include "pcednet/formats/format.h"
 #include "pcednet/io/text_scan.h"
 #include "result_plan.h"
 #include "workbench/shapes/default_set.h"
@@ -65,7 +66,7 @@ study::CloudSet read_set(const std::string& name, const std::vector<std::string>
     throw_if_cancelled(&progress);
     auto loaded = truth::read_labelled(file);
     warn_all(file, loaded.warnings);
-    const std::string stem = file.stem().string();
+    const std::string stem = formats::stem_of(file);
     const std::string written = as_utf8(stem);  // in the file of the study
     if (!names.insert(written).second) {
       throw Error(ErrorKind::kUsage, fmt::format("{}: the set {} has a cloud {} already",

@@ -25,7 +25,6 @@ namespace fs = std::filesystem;
 /// Joules that the packages' counters show; empty if there is none to read. Joules lost when a
 /// counter starts over (after 2^18 J or so) show as a negative lap, which counts as zero.
 std::optional<double> counted_joules() {
-  namespace fs = std::filesystem;
   std::error_code error;
   std::optional<double> sum;
   for (const auto& entry : fs::directory_iterator("/sys/class/powercap", error)) {
