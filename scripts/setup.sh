@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs what pcednet needs from Debian 12: scripts/setup.sh [test] [python] [web] [package] [clients]
+# Installs what pcednet needs from Debian 12: scripts/setup.sh [test] [python] [package] [check] [web] [clients]
 # Does nothing (and needs no root) when everything is there already.
 set -eu
 list="$(dirname "$0")/packages.txt"

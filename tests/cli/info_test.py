@@ -2,6 +2,7 @@
 import json
 import os
 import re
+import shutil
 import signal
 import struct
 import subprocess
@@ -10,7 +11,7 @@ import unittest
 import numpy as np
 
 from las_test import FORMATS, las, random_rows, vlr
-from support import PROGRAM, CliTest, cube, run, write_ply
+from support import PROGRAM, SOURCE, CliTest, cube, run, write_ply
 
 
 class Info(CliTest):
@@ -163,6 +164,11 @@ class Info(CliTest):
         part, = self.info(self.folder / "a.las")
         self.assertEqual((part["bounds"]["max"], part["points"]), ([31.75] * 3, len(grid)))
         self.assertEqual(sum(part["las"]["points_by_return"].values()), part["points_read"])
+
+    def test_describes_models_by_an_extension_in_any_case(self):
+        model = self.folder / "M.SafeTensors"
+        shutil.copy(SOURCE / "models/scan.safetensors", model)
+        self.assertIn("  format         model\n", run("info", model).stdout)
 
     def test_ctrl_c_ends_a_long_reading(self):
         write_ply(self.folder / "a.ply", np.random.default_rng(3).random((2_100_000, 3)))

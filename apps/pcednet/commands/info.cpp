@@ -14,6 +14,7 @@
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/virtual_cloud.h"
 #include "pcednet/io/input_file.h"
+#include "pcednet/io/text_scan.h"
 #include "pcednet/tiles/large_facts.h"
 
 namespace pcednet::app {
@@ -29,7 +30,7 @@ std::size_t weights_of(const nn::Model& model) {
 }
 
 bool is_model_file(const std::filesystem::path& path) {
-  return path.extension() == ".safetensors";
+  return io::extension_of(path) == ".safetensors";
 }
 
 OrderedJson model_json(const std::filesystem::path& path, const detect::EdgeModel& model) {
