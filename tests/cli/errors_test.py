@@ -104,7 +104,8 @@ class Errors(CliTest):
     def test_reading_stops_at_once(self):
         text = self.folder / "a.xyz"
         text.write_bytes(b"0.123456 1.234567 2.345678\n" * 5_000_000)
-        for arguments in (("classify", text), ("convert", text, "-o", self.folder / "a.ply")):
+        for arguments in (("classify", text), ("convert", text, "-o", self.folder / "a.ply"),
+                          ("describe", text, "-o", self.folder / "a.npy")):
             running = subprocess.Popen([PROGRAM, *map(str, arguments), "--threads", "1"], stderr=subprocess.PIPE, text=True,
                                        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (1, 1)))
             while not has_open(running, text):

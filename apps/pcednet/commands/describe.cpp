@@ -106,9 +106,7 @@ void describe(const DescribeArguments& arguments, const Common& common) {
   const fs::path beside = fs::path(output).replace_extension(".json");
   check_one_cloud("describe", arguments.input);
   for (const fs::path& file : {output, beside}) check_not_input(file, arguments.input);
-  check_writable(output, common.overwrite());
-  OutputFile settings(beside, common.overwrite());
-
+  for (const fs::path& file : {output, beside}) check_writable(file, common.overwrite());
   const PointCloud cloud = read_cloud(arguments.input);
   const Progress progress = console_progress(common);
   const auto prepared = prepare(arguments.input, cloud, arguments.preparation, progress);
@@ -127,6 +125,7 @@ void describe(const DescribeArguments& arguments, const Common& common) {
   const auto width = static_cast<std::size_t>(gls::column_count(options));
   io::NpyWriter matrix(output, {cloud.size(), space.scales().size(), width}, ScalarType::kFloat32,
                        common.overwrite());
+  OutputFile settings(beside, common.overwrite());
   const StatusCounts counts = write_matrix(space, cloud.size(), matrix, progress);
   matrix.commit();
   settings.write(to_text(to_json(arguments, space, cloud.size(), counts), 2, NotUtf8::kReplace) +
