@@ -233,14 +233,18 @@ std::vector<std::uint32_t> rank_uncertain(std::span<const Vec3> positions,
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (positions[i].allFinite()) candidates.push_back(static_cast<std::uint32_t>(i));
   }
-  std::sort(candidates.begin(), candidates.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return confidence[a] != confidence[b] ? confidence[a] < confidence[b] : a < b;
-  });
+  const auto is_surer = [&](std::uint32_t a, std::uint32_t b) {
+    return confidence[a] != confidence[b] ? confidence[a] > confidence[b] : a > b;
+  };
+  // A heap: of all points few are asked for.
+  std::make_heap(candidates.begin(), candidates.end(), is_surer);
   std::vector<std::uint32_t> places;
   std::vector<std::uint8_t> taken(positions.size(), 0);
   std::vector<spatial::Neighbour> found;
-  for (const std::uint32_t point : candidates) {
-    if (places.size() == most) break;
+  while (!candidates.empty() && places.size() < most) {
+    std::pop_heap(candidates.begin(), candidates.end(), is_surer);
+    const std::uint32_t point = candidates.back();
+    candidates.pop_back();
     if (taken[point]) continue;
     places.push_back(point);
     tree.within_unsorted(positions[point], apart, found);
