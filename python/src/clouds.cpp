@@ -63,6 +63,14 @@ Attribute attribute_of(const std::string& name, const py::array& values) {
   return attribute;
 }
 
+/// Arrays by the names of the attributes that they become.
+void add_columns(const py::dict& columns, PointCloud& cloud) {
+  for (const auto& [name, values] : columns) {
+    cloud.attributes.push_back(
+        attribute_of(bytes_of_text(name), py::reinterpret_borrow<py::array>(values)));
+  }
+}
+
 std::vector<Vec3> copied(const py::handle& array) {
   const auto found = vectors(array.cast<Array<double>>());
   return {found.begin(), found.end()};
@@ -93,10 +101,7 @@ PointCloud put_together(const py::dict& parts) {
     const auto labels = parts["labels"].cast<Array<std::uint8_t>>();
     cloud.labels.assign(labels.data(), labels.data() + labels.size());
   }
-  for (const auto& [name, values] : parts["attributes"].cast<py::dict>()) {
-    cloud.attributes.push_back(
-        attribute_of(bytes_of_text(name), py::reinterpret_borrow<py::array>(values)));
-  }
+  add_columns(parts["attributes"], cloud);
   cloud.comments = bytes_of_texts(parts["comments"]);
   cloud.scanners = copied(parts["scanners"]);
   return cloud;
@@ -134,10 +139,7 @@ py::object truth_of_result(const py::list& comments, const py::dict& columns,
   PointCloud cloud;
   cloud.labels.assign(numbers(own).begin(), numbers(own).end());
   cloud.comments = bytes_of_texts(comments);
-  for (const auto& [name, values] : columns) {
-    cloud.attributes.push_back(
-        attribute_of(bytes_of_text(name), py::reinterpret_borrow<py::array>(values)));
-  }
+  add_columns(columns, cloud);
   auto truth = detect::truth_of_result(cloud);
   if (!truth) return py::none();
   py::object labels = py::none();
@@ -150,10 +152,7 @@ py::object truth_of_result(const py::list& comments, const py::dict& columns,
 py::object edge_column(const py::dict& columns, std::size_t points) {
   PointCloud cloud;
   cloud.positions.resize(points, Vec3::Zero());
-  for (const auto& [name, values] : columns) {
-    cloud.attributes.push_back(
-        attribute_of(bytes_of_text(name), py::reinterpret_borrow<py::array>(values)));
-  }
+  add_columns(columns, cloud);
   auto found = formats::edge_column_of(cloud);
   if (!found) return py::none();
   return py::make_tuple(give(std::move(found->classes)), text_of(found->column));

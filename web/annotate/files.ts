@@ -2,6 +2,7 @@
 
 import { h } from "../shared/dom";
 import { ApiError, type Api } from "./api";
+import { plural } from "./format";
 import type { Words } from "./words";
 import type { AppStore } from "./store";
 
@@ -11,8 +12,6 @@ interface SavedFile {
   path: string;
   strokes_left_out: number;
 }
-
-const strokes = (count: number): string => (count === 1 ? "1 stroke" : `${count} strokes`);
 
 /** What is said of a file whose model is older than what is painted. */
 function lacking(what: Saved, left: string): string {
@@ -31,7 +30,7 @@ export class Files {
   async save(what: Saved, cloud: number, confirm: (words: string) => Promise<boolean>): Promise<string | null> {
     const post = async (more = {}): Promise<string> => {
       const saved = await this.api.post<SavedFile>("/api/save", { what, cloud, ...more });
-      if (saved.strokes_left_out > 0) this.words.warn(lacking(what, strokes(saved.strokes_left_out)));
+      if (saved.strokes_left_out > 0) this.words.warn(lacking(what, plural(saved.strokes_left_out, "stroke")));
       return saved.path;
     };
     this.store.set({ saving: true });

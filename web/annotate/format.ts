@@ -2,6 +2,8 @@
 
 export const count = (n: number): string => n.toLocaleString("en").replace(/,/g, "\u202f");
 
+export const plural = (n: number, noun: string): string => `${count(n)} ${noun}${n === 1 ? "" : "s"}`;
+
 export const percent = (share: number): string => `${(100 * share).toFixed(1)} %`;
 
 export const seconds = (s: number): string => (s < 10 ? `${s.toFixed(2)} s` : `${s.toFixed(0)} s`);

@@ -5,7 +5,7 @@ import { h } from "../shared/dom";
 import type { Press } from "./chrome";
 import type { Client } from "./client";
 import { refusalOf } from "./refusal";
-import { count, length, percent } from "./format";
+import { count, length, percent, plural } from "./format";
 import { allow, button, buttons, checkbox, section, showOnly } from "./panel";
 import { countDecisions, type Reviewer } from "./reviewer";
 import type { AppStore, DxfArcs } from "./store";
@@ -27,8 +27,6 @@ const DXF_ARCS: { value: DxfArcs; words: string }[] = [
   },
   { value: "none", words: "DXF has polylines only, for CloudCompare." },
 ];
-
-const plural = (n: number, noun: string): string => `${count(n)} ${noun}${n === 1 ? "" : "s"}`;
 
 /** How the search and the decisions stand. */
 function summary(store: AppStore): string {
