@@ -16,7 +16,7 @@
 #include "pcednet/eval/scores.h"
 #include "pcednet/formats/read_cloud.h"
 #include "pcednet/gls/scales.h"
-#include "workbench/annotate/learn.h"
+#include "workbench/annotate/learn/learn.h"
 
 namespace pcednet::annotate {
 namespace {

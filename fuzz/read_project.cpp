@@ -1,8 +1,8 @@
 #include <string_view>
 
 #include "in_memory.h"
-#include "workbench/annotate/json.h"
-#include "workbench/annotate/project.h"
+#include "workbench/annotate/page/json.h"
+#include "workbench/annotate/project/project.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string_view>
 
-#include "workbench/annotate/api.h"
+#include "workbench/annotate/page/api.h"
 
 namespace pcednet::app {
 

@@ -12,7 +12,7 @@
 #include "pcednet/core/error.h"
 #include "pcednet/detect/points/rounding.h"
 #include "text.h"
-#include "workbench/annotate/adapt.h"
+#include "workbench/annotate/learn/adapt.h"
 
 namespace pcednet::python {
 namespace {

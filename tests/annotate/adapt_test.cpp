@@ -1,4 +1,4 @@
-#include "workbench/annotate/adapt.h"
+#include "workbench/annotate/learn/adapt.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 
 #include "pcednet/core/random_vectors.h"
-#include "workbench/annotate/held_out.h"
+#include "workbench/annotate/learn/held_out.h"
 
 namespace pcednet::annotate {
 namespace {

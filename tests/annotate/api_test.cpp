@@ -1,4 +1,4 @@
-#include "workbench/annotate/api.h"
+#include "workbench/annotate/page/api.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "workbench/annotate/classes.h"
+#include "workbench/annotate/project/classes.h"
 
 #include <gtest/gtest.h>
 
 #include "pcednet/core/random.h"
 #include "pcednet/nn/predict.h"
 #include "support/expect_error.h"
-#include "workbench/annotate/learn.h"
-#include "workbench/annotate/project.h"
+#include "workbench/annotate/learn/learn.h"
+#include "workbench/annotate/project/project.h"
 
 namespace pcednet::annotate {
 namespace {

@@ -1,4 +1,4 @@
-#include "workbench/annotate/file_classes.h"
+#include "workbench/annotate/scene/file_classes.h"
 
 #include <gtest/gtest.h>
 

@@ -14,8 +14,8 @@
 #include "pcednet/formats/write_cloud.h"
 #include "support/expect_error.h"
 #include "support/own_folder.h"
-#include "workbench/annotate/json.h"
-#include "workbench/annotate/project.h"
+#include "workbench/annotate/page/json.h"
+#include "workbench/annotate/project/project.h"
 #include "workbench/annotate/session.h"
 
 namespace pcednet::annotate {

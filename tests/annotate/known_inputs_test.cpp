@@ -1,4 +1,4 @@
-#include "workbench/annotate/known_files.h"
+#include "workbench/annotate/project/known_files.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include "pcednet/core/error.h"
 #include "support/expect_error.h"
 #include "support/own_folder.h"
-#include "workbench/annotate/painting.h"
+#include "workbench/annotate/project/painting.h"
 
 namespace pcednet::annotate {
 namespace {

@@ -1,4 +1,4 @@
-#include "workbench/annotate/layout.h"
+#include "workbench/annotate/scene/layout.h"
 
 #include <gtest/gtest.h>
 

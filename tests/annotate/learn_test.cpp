@@ -1,4 +1,4 @@
-#include "workbench/annotate/learn.h"
+#include "workbench/annotate/learn/learn.h"
 
 #include <gtest/gtest.h>
 

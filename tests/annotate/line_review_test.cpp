@@ -1,4 +1,4 @@
-#include "workbench/annotate/line_review.h"
+#include "workbench/annotate/scene/line_review.h"
 
 #include <gtest/gtest.h>
 

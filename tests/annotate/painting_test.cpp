@@ -12,9 +12,9 @@
 #include "pcednet/core/random_vectors.h"
 #include "support/expect_error.h"
 #include "support/own_folder.h"
-#include "workbench/annotate/journal.h"
-#include "workbench/annotate/painting.h"
-#include "workbench/annotate/select.h"
+#include "workbench/annotate/project/journal.h"
+#include "workbench/annotate/project/painting.h"
+#include "workbench/annotate/scene/select.h"
 
 namespace pcednet::annotate {
 namespace {

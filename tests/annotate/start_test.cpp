@@ -13,8 +13,8 @@
 #include "pcednet/io/ply/faces.h"
 #include "support/expect_error.h"
 #include "support/own_folder.h"
-#include "workbench/annotate/known_files.h"
-#include "workbench/annotate/scene.h"
+#include "workbench/annotate/project/known_files.h"
+#include "workbench/annotate/scene/scene.h"
 #include "workbench/annotate/session.h"
 
 namespace pcednet::annotate {

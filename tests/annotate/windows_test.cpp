@@ -1,8 +1,8 @@
-#include "workbench/annotate/windows.h"
+#include "workbench/annotate/page/windows.h"
 
 #include <gtest/gtest.h>
 
-#include "workbench/annotate/not_found.h"
+#include "workbench/annotate/scene/not_found.h"
 
 namespace pcednet::annotate {
 namespace {

@@ -14,10 +14,10 @@
 #include "models.h"
 #include "pcednet/core/error.h"
 #include "web_pages.h"
-#include "workbench/annotate/api.h"
-#include "workbench/annotate/journal.h"
-#include "workbench/annotate/known_files.h"
-#include "workbench/annotate/painting.h"
+#include "workbench/annotate/page/api.h"
+#include "workbench/annotate/project/journal.h"
+#include "workbench/annotate/project/known_files.h"
+#include "workbench/annotate/project/painting.h"
 #include "workbench/annotate/saving.h"
 
 namespace pcednet::app {

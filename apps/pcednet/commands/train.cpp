@@ -19,10 +19,10 @@
 #include "pcednet/detect/train.h"
 #include "pcednet/io/text_scan.h"
 #include "stage_clock.h"
-#include "workbench/annotate/adapt.h"
-#include "workbench/annotate/known_files.h"
-#include "workbench/annotate/learn.h"
-#include "workbench/annotate/painting.h"
+#include "workbench/annotate/learn/adapt.h"
+#include "workbench/annotate/learn/learn.h"
+#include "workbench/annotate/project/known_files.h"
+#include "workbench/annotate/project/painting.h"
 
 namespace pcednet::app {
 namespace {

@@ -8,9 +8,9 @@
 #include <variant>
 #include <vector>
 
-#include "workbench/annotate/held_out.h"
-#include "workbench/annotate/line_review.h"
-#include "workbench/annotate/scene.h"
+#include "workbench/annotate/learn/held_out.h"
+#include "workbench/annotate/scene/line_review.h"
+#include "workbench/annotate/scene/scene.h"
 
 namespace pcednet::annotate {
 

@@ -9,8 +9,8 @@
 #include "pcednet/detect/result_truth.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/io/las/las.h"
-#include "workbench/annotate/outputs.h"
-#include "workbench/annotate/painting.h"
+#include "workbench/annotate/learn/outputs.h"
+#include "workbench/annotate/project/painting.h"
 
 namespace pcednet::annotate {
 

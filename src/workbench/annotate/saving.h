@@ -5,8 +5,8 @@
 #include <string>
 
 #include "pcednet/io/drawing/drawing.h"
-#include "workbench/annotate/line_review.h"
-#include "workbench/annotate/scene.h"
+#include "workbench/annotate/scene/line_review.h"
+#include "workbench/annotate/scene/scene.h"
 
 namespace pcednet::annotate {
 

@@ -7,9 +7,9 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/formats/write_cloud.h"
-#include "workbench/annotate/learn.h"
-#include "workbench/annotate/not_found.h"
-#include "workbench/annotate/outputs.h"
+#include "workbench/annotate/learn/learn.h"
+#include "workbench/annotate/learn/outputs.h"
+#include "workbench/annotate/scene/not_found.h"
 #include "workbench/annotate/session_state.h"
 
 namespace pcednet::annotate {

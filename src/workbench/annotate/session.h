@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "workbench/annotate/messages.h"
+#include "workbench/annotate/project/stroke.h"
 #include "workbench/annotate/saving.h"
-#include "workbench/annotate/stroke.h"
 
 namespace pcednet::annotate {
 

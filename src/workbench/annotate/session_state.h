@@ -7,7 +7,7 @@
 #include <mutex>
 #include <thread>
 
-#include "workbench/annotate/painting.h"
+#include "workbench/annotate/project/painting.h"
 #include "workbench/annotate/runs.h"
 #include "workbench/annotate/session.h"
 

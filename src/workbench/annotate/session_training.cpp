@@ -6,7 +6,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/stopwatch.h"
-#include "workbench/annotate/learn.h"
+#include "workbench/annotate/learn/learn.h"
 #include "workbench/annotate/session_state.h"
 
 namespace pcednet::annotate {

@@ -7,9 +7,9 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/lines/find_lines.h"
-#include "workbench/annotate/line_review.h"
-#include "workbench/annotate/not_found.h"
-#include "workbench/annotate/select.h"
+#include "workbench/annotate/scene/line_review.h"
+#include "workbench/annotate/scene/not_found.h"
+#include "workbench/annotate/scene/select.h"
 #include "workbench/annotate/session_state.h"
 
 namespace pcednet::annotate {

@@ -3,7 +3,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/json.h"
-#include "workbench/annotate/outputs.h"
+#include "workbench/annotate/learn/outputs.h"
 #include "workbench/annotate/session_state.h"
 
 namespace pcednet::annotate {
