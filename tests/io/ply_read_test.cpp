@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "io/scratch.h"
+#include "pcednet/io/faces.h"
 
 namespace pcednet::io {
 namespace {
@@ -308,8 +309,32 @@ TEST(PlyRead, RefusesListsThatCannotBe) {
   });
   // An element without properties has no bytes, however many rows it claims.
   const auto cloud = scratch.read(
-      "b.ply", header("binary_little_endian", "element nothing 99999999999\n" + vertex) + point);
+      "b.ply",
+      header("binary_little_endian", vertex + "element face 18446744073709551615\n") + point);
   EXPECT_EQ(cloud.cloud.size(), 1u);
+  EXPECT_TRUE(triangles_of(cloud.cloud).empty());
+}
+
+TEST(PlyRead, NamesTheRowOfABrokenListOfVertices) {
+  const Scratch scratch;
+  const std::string start =
+      header("binary_little_endian",
+             "element vertex 3\n" + std::string(kXyz) + "property list uchar int near\n");
+  const std::string row = packed(1.0F, 2.0F, 3.0F, std::uint8_t{1}, 5);
+  const std::string cut_off = packed(1.0F, 2.0F, 3.0F, std::uint8_t{200}, 5);
+  const std::string message =
+      error_of(ErrorKind::kUnreadable, [&] { scratch.read("a.ply", start + row + row + cut_off); });
+  const std::size_t begin = start.size() + 2 * row.size();
+  EXPECT_TRUE(contains(message, "byte " + std::to_string(begin) + ": row 3 of 3")) << message;
+}
+
+TEST(PlyRead, FindsTheFacesForAnyBlanksInTheHeader) {
+  const Scratch scratch;
+  const auto loaded = scratch.read(
+      "a.ply", header("ascii", std::string("element\tvertex  3\n") + kXyz +
+                                   "element  face\t1\nproperty list uchar int vertex_indices\n") +
+                   "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  EXPECT_EQ(triangles_of(loaded.cloud), (std::vector<Triangle>{{0, 1, 2}}));
 }
 
 TEST(PlyRead, ReadsClearlyWhatHasNoPoints) {

@@ -110,15 +110,19 @@ std::byte* PlyBinaryBody::walk(const PlyElement& element, std::uint64_t count, s
   std::byte* row = begin;
   for (std::uint64_t i = 0; i < count; ++i) {
     std::byte* const next = walk_ply_row(element, row, end, swap_, visit);
-    if (!next) {
-      throw unreadable(file_.path(),
-                       fmt::format("byte {}: row {} of {} of element {} is broken or cut off",
-                                   offset_ + static_cast<std::uint64_t>(row - begin), i + 1,
-                                   element.count, element.name));
-    }
+    if (!next) throw broken_row(element, i, row - begin);
     row = next;
   }
   return row;
+}
+
+/// The row number `row` of an element that begins at `offset_`, `bytes` behind that.
+Error PlyBinaryBody::broken_row(const PlyElement& element, std::uint64_t row,
+                                std::ptrdiff_t bytes) const {
+  return unreadable(file_.path(),
+                    fmt::format("byte {}: row {} of {} of element {} is broken or cut off",
+                                offset_ + static_cast<std::uint64_t>(bytes), row + 1, element.count,
+                                element.name));
 }
 
 void PlyBinaryBody::read_list_vertices(const PlyElement& vertex, CloudBuilder& builder) {
@@ -134,7 +138,9 @@ void PlyBinaryBody::read_list_vertices(const PlyElement& vertex, CloudBuilder& b
       std::memcpy(packed, number, size_of(type));
       packed += size_of(type);
     };
-    row = walk(vertex, 1, row, end, keep);
+    std::byte* const next = walk_ply_row(vertex, row, end, swap_, keep);
+    if (!next) throw broken_row(vertex, i, row - left.data());
+    row = next;
   }
   feeder.flush();
   offset_ += static_cast<std::uint64_t>(row - left.data());

@@ -51,6 +51,7 @@ class PlyBinaryBody {
   template <typename Visit>
   std::byte* walk(const PlyElement& element, std::uint64_t count, std::byte* begin,
                   const std::byte* end, Visit&& visit) const;
+  Error broken_row(const PlyElement& element, std::uint64_t row, std::ptrdiff_t bytes) const;
   void read_list_vertices(const PlyElement& vertex, CloudBuilder& builder);
   std::span<std::byte> tail();
 

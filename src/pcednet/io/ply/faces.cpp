@@ -112,6 +112,7 @@ std::vector<Triangle> triangles_of(const PointCloud& cloud) {
     const PlyHeader header = parse_ply_header(
         "faces", "ply\nformat binary_little_endian 1.0\n" + foreign.header + "end_header\n");
     const PlyElement& face = header.elements.front();
+    if (face.properties.empty()) continue;  // any number of rows in no bytes
     Rows rows(foreign.bytes);
     for (rows.face = 0; rows.face < face.count; ++rows.face) {
       for (const PlyProperty& property : face.properties) {

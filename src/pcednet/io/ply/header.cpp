@@ -82,6 +82,7 @@ PlyElement parse_element(const Words& words, const HeaderLines& lines) {
   PlyElement element;
   element.name = words[1];
   element.count = *count;
+  element.text = fmt::format("element {} {}\n", element.name, element.count);
   return element;
 }
 
@@ -106,12 +107,6 @@ PlyProperty parse_property(const Words& words, const HeaderLines& lines) {
   return property;
 }
 
-void check_unique_vertex(const PlyHeader& header, const HeaderLines& lines) {
-  const auto vertices = std::count_if(header.elements.begin(), header.elements.end(),
-                                      [](const PlyElement& e) { return e.name == "vertex"; });
-  if (vertices > 1) throw lines.error("a second element vertex");
-}
-
 }  // namespace
 
 bool PlyElement::has_lists() const {
@@ -131,7 +126,7 @@ PlyHeader parse_ply_header(const std::filesystem::path& path, std::string_view t
   HeaderLines lines(path, text);
   if (lines.next() != "ply") throw lines.error("not a PLY file: the first line must be ply");
   PlyHeader header;
-  bool has_format = false;
+  bool has_format = false, has_vertex = false;
   Words words;
   for (std::string_view line = lines.next(); line != "end_header"; line = lines.next()) {
     split(line, words);
@@ -145,8 +140,9 @@ PlyHeader parse_ply_header(const std::filesystem::path& path, std::string_view t
       has_format = true;
     } else if (words[0] == "element") {
       header.elements.push_back(parse_element(words, lines));
-      header.elements.back().text = fmt::format("{}\n", line);
-      check_unique_vertex(header, lines);
+      const bool is_vertex = words[1] == "vertex";
+      if (is_vertex && has_vertex) throw lines.error("a second element vertex");
+      has_vertex = has_vertex || is_vertex;
     } else if (words[0] == "property" && !header.elements.empty()) {
       header.elements.back().properties.push_back(parse_property(words, lines));
       header.elements.back().text += fmt::format("{}\n", line);
