@@ -147,6 +147,8 @@ TEST_F(ParallelBlocks, KeepTheBoundOfTheirOwnCaller) {
   EXPECT_EQ(used[0], 1U);
   EXPECT_LE(used[1], 2U);
   EXPECT_GE(threads_under(0), 1U);
+  set_thread_count(1);
+  EXPECT_EQ(threads_under(2), 1U);  // at most as many as all work may use
   EXPECT_ERROR(ErrorKind::kUsage,
                run_with_threads(1, [] { throw Error(ErrorKind::kUsage, "as it came"); }));
 }

@@ -37,7 +37,7 @@ void run_with_threads(int threads, const std::function<void()>& work) {
     int before;
     ~Bound() { own_threads = before; }
   } const bound{own_threads};
-  if (threads > 0) own_threads = threads;
+  if (threads > 0) own_threads = std::min(threads, thread_count());
   work();
 }
 
