@@ -41,10 +41,16 @@ TEST(ClassTable, GivesNoColourTwice) {
 }
 
 TEST(ClassTable, RefusesWhatIsNone) {
-  for (const char* wrong : {"", "ground", "a,b,a", "a,,b", "a,b=red", "a,b=#12345",
-                            "edges,a,b,c,d,e", "a,b,c,d,e,f,g,h,i", "a,b\tc", "a,\xff",
-                            "a,=#123456", "a,bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb"}) {
-    EXPECT_ERROR(ErrorKind::kUsage, parse_classes(wrong));
+  for (const char* wrong :
+       {"", "ground", "a,b,a", "a,,b", "a,b=red", "a,b=#12345", "edges,a,b,c,d,e",
+        "a,b,c,d,e,f,g,h,i", "a,b\tc", "a,\xff", "a,\xe0\x80\x80", "a,\xed\xa0\x80",
+        "a,\xf0\x80\x80\x80", "a,\xf4\x90\x80\x80", "a,=#123456",
+        "a,bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb"}) {
+    EXPECT_ERROR(ErrorKind::kUsage, parse_classes(wrong)) << wrong;
+  }
+  for (const char* name :
+       {"\xe0\xa0\x80", "\xed\x9f\xbf", "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf"}) {
+    EXPECT_EQ(parse_classes(std::string("a,") + name)[1].name, name);
   }
 }
 

@@ -27,11 +27,12 @@ constexpr std::array<Rgb, kMostClasses> kUsualColours = {{{89, 161, 79},
   throw Error(ErrorKind::kUsage, "classes: " + why);
 }
 
-/// The number of characters; none unless the text is UTF-8.
+/// The number of characters; none unless the text is UTF-8, as JSON takes it.
 std::optional<std::size_t> characters_of(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   std::size_t characters = 0;
   for (std::size_t i = 0; i < text.size(); ++characters) {
-    const auto lead = static_cast<unsigned char>(text[i]);
+    const unsigned char lead = byte(i);
     const std::size_t length = lead < 0x80                    ? 1
                                : lead >= 0xc2 && lead <= 0xdf ? 2
                                : lead >= 0xe0 && lead <= 0xef ? 3
@@ -39,8 +40,13 @@ std::optional<std::size_t> characters_of(std::string_view text) {
                                                               : 0;
     if (length == 0 || i + length > text.size()) return std::nullopt;
     for (std::size_t k = 1; k < length; ++k) {
-      if ((static_cast<unsigned char>(text[i + k]) & 0xc0) != 0x80) return std::nullopt;
+      if ((byte(i + k) & 0xc0) != 0x80) return std::nullopt;
     }
+    // Longer than needed, halves of UTF-16, and beyond U+10FFFF.
+    const bool is_none =
+        (lead == 0xe0 && byte(i + 1) < 0xa0) || (lead == 0xed && byte(i + 1) >= 0xa0) ||
+        (lead == 0xf0 && byte(i + 1) < 0x90) || (lead == 0xf4 && byte(i + 1) >= 0x90);
+    if (is_none) return std::nullopt;
     i += length;
   }
   return characters;
