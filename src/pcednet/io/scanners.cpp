@@ -4,10 +4,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {
+namespace {
+
+struct NumberedScanner {
+  std::size_t index = 0;
+  Vec3 place = Vec3::Zero();
+};
+
+/// The scanner of a comment that add_scanner() made.
+std::optional<NumberedScanner> scanner_in(const std::string& comment) {
+  constexpr std::size_t kMostScanners = 1 << 16;
+  std::vector<std::string_view> words;
+  split(comment, words);
+  if (words.size() != 5 || words[0] != "scanner" || !words[1].ends_with(':')) return std::nullopt;
+  const auto index = parse_count(words[1].substr(0, words[1].size() - 1));
+  const auto x = parse_double(words[2]), y = parse_double(words[3]), z = parse_double(words[4]);
+  if (!index || *index >= kMostScanners || !x || !y || !z) return std::nullopt;
+  return NumberedScanner{*index, {*x, *y, *z}};
+}
+
+}  // namespace
 
 void add_scanner(const Vec3& position, PointCloud& cloud) {
   if (position.allFinite()) {
@@ -18,17 +39,14 @@ void add_scanner(const Vec3& position, PointCloud& cloud) {
 }
 
 std::vector<Vec3> scanners_of_comments(const std::vector<std::string>& comments) {
-  constexpr std::size_t kMostScanners = 1 << 16;
   std::vector<Vec3> scanners;
-  std::vector<std::string_view> words;
   for (const std::string& comment : comments) {
-    split(comment, words);
-    if (words.size() != 5 || words[0] != "scanner" || !words[1].ends_with(':')) continue;
-    const auto index = parse_count(words[1].substr(0, words[1].size() - 1));
-    const auto x = parse_double(words[2]), y = parse_double(words[3]), z = parse_double(words[4]);
-    if (!index || *index >= kMostScanners || !x || !y || !z) continue;
-    if (scanners.size() <= *index) scanners.resize(*index + 1, Vec3::Constant(NAN));
-    scanners[*index] = {*x, *y, *z};
+    const auto scanner = scanner_in(comment);
+    if (!scanner) continue;
+    if (scanners.size() <= scanner->index) {
+      scanners.resize(scanner->index + 1, Vec3::Constant(NAN));
+    }
+    scanners[scanner->index] = scanner->place;
   }
   return scanners;
 }
@@ -40,7 +58,7 @@ bool are_same(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 }
 
 void set_scanners(const std::vector<Vec3>& scanners, PointCloud& cloud) {
-  std::erase_if(cloud.comments, [](const auto& one) { return one.starts_with("scanner "); });
+  std::erase_if(cloud.comments, [](const auto& one) { return scanner_in(one).has_value(); });
   cloud.scanners.clear();
   for (const Vec3& place : scanners) add_scanner(place, cloud);
 }
