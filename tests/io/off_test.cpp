@@ -42,6 +42,10 @@ TEST(Off, ReadsNormalsAndColoursThatTheKeywordAnnounces) {
   EXPECT_EQ(fractions.cloud.attributes[0].name, "alpha");
   EXPECT_EQ(fractions.cloud.attributes[0].value(0), 0.5);
   EXPECT_TRUE(fractions.warnings.empty());
+
+  const auto some = scratch.read("a.off", "COFF\n2 0 0\n0 0 0 1 0 0 0.5\n1 0 0 0 1 0\n");
+  EXPECT_TRUE(some.cloud.attributes.empty());
+  EXPECT_EQ(some.warnings, std::vector<std::string>{"alphas of 1 of 2 vertices are not kept"});
 }
 
 TEST(Off, WarnsOfWhatItLeavesOut) {

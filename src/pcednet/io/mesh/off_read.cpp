@@ -35,6 +35,9 @@ class OffText {
     if (!colours_[0].empty()) add_colours(colours_, cloud_, loaded_.warnings);
     if (!alphas_.empty() && alphas_.size() == cloud_.size()) {
       cloud_.attributes.push_back(make_attribute("alpha", alphas_));
+    } else if (!alphas_.empty()) {
+      loaded_.warnings.push_back(
+          fmt::format("alphas of {} of {} vertices are not kept", alphas_.size(), cloud_.size()));
     }
     if (!sizes_.empty()) cloud_.foreign_elements = {make_face_element(sizes_, corners_)};
     warn_of_omissions();
