@@ -9,6 +9,7 @@
 
 #include "pcednet/core/error.h"
 #include "pcednet/formats/read_cloud.h"
+#include "pcednet/io/file_lines.h"
 #include "pcednet/io/input_file.h"
 #include "pcednet/io/promote.h"
 #include "pcednet/io/text_scan.h"
@@ -49,10 +50,9 @@ std::vector<std::uint8_t> read_bytes(const io::InputFile& file, Classes classes)
 /// one that is no label, such as the number of points.
 std::optional<std::vector<std::uint8_t>> read_text_labels(const io::InputFile& file,
                                                           Classes classes) {
-  const std::string text = io::in_utf8(file.text());
   std::vector<std::uint8_t> labels;
   std::vector<std::string_view> words;
-  io::Lines lines(io::without_mark(text));
+  io::FileLines lines(file);
   std::string_view line;
   std::optional<Error> no_label;
   while (lines.next(line)) {

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "pcednet/io/file_lines.h"
 #include "pcednet/io/mesh/stl.h"
 #include "pcednet/io/ply/faces.h"
 #include "pcednet/io/text_scan.h"
@@ -81,8 +82,7 @@ Corners read_binary_stl(const InputFile& file) {
 /// Reads the statements of an ASCII STL, one a line.
 class AsciiStl {
  public:
-  AsciiStl(const std::filesystem::path& path, std::string_view text)
-      : path_(path), lines_(without_mark(text)) {}
+  explicit AsciiStl(const InputFile& file) : path_(file.path()), lines_(file) {}
 
   Corners read() {
     bool is_open = false;
@@ -123,7 +123,7 @@ class AsciiStl {
   }
 
   const std::filesystem::path& path_;
-  Lines lines_;
+  FileLines lines_;
   std::vector<std::string_view> words_;
   std::size_t vertices_ = 0;  ///< of the facet so far
   Corners corners_;
@@ -169,7 +169,7 @@ LoadedCloud read_stl(const InputFile& file) {
                                               "an ASCII one begins with solid",
                                               file.size(), kBytesOfStlHeader));
   }
-  Corners corners = is_ascii ? AsciiStl(file.path(), file.text()).read() : read_binary_stl(file);
+  Corners corners = is_ascii ? AsciiStl(file).read() : read_binary_stl(file);
   if (corners.positions.size() / 3 > kMostTriangles) {
     throw unreadable(file.path(), fmt::format("more than {} triangles", kMostTriangles));
   }
