@@ -62,6 +62,17 @@ TEST_F(LasMerge, TakesTheSystemOfTheFirstThatNamesMost) {
   EXPECT_EQ(merge_las_files(std::vector{flat, none}, 0).records.at(0).data, plane);
 }
 
+TEST_F(LasMerge, KeepsALongDefinitionInAnExtendedRecord) {
+  const std::string wkt =
+      "PROJCS[\"" + std::string(70'000, 'x') + R"(",AUTHORITY["EPSG","25832"]])";
+  const std::vector<LasFile> files = {file({}),
+                                      file({.extended = {{"LASF_Projection", 2112, wkt}}})};
+  const LasFile merged = merge_las_files(files, 0);
+  EXPECT_TRUE(merged.records.empty());  // these have 16 bits of length
+  ASSERT_EQ(merged.extended_records.size(), 1u);
+  EXPECT_EQ(merged.extended_records[0].data, wkt);
+}
+
 TEST_F(LasMerge, CountsTimesAsTheChosenFile) {
   const auto with = [&](unsigned format, unsigned encoding) {
     LasFile its = file({.format = format});

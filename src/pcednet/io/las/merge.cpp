@@ -1,7 +1,6 @@
 #include "pcednet/io/las/merge.h"
 
 #include <algorithm>
-#include <iterator>
 #include <set>
 #include <string_view>
 
@@ -100,7 +99,13 @@ void take_system(std::span<const LasFile> files, LasFile& merged) {
   if (fullest == files.end() || fullest == files.begin()) return;
   for (auto records : {&LasFile::records, &LasFile::extended_records}) {
     std::erase_if(merged.*records, is_of_system);
-    std::ranges::copy_if((*fullest).*records, std::back_inserter(merged.records), is_of_system);
+  }
+  for (const auto* records : {&fullest->records, &fullest->extended_records}) {
+    for (const LasRecord& record : *records) {
+      if (!is_of_system(record)) continue;
+      const bool fits = record.data.size() <= UINT16_MAX;  // its length, of 16 bits
+      (fits ? merged.records : merged.extended_records).push_back(record);
+    }
   }
   set_encoding(merged, encoding_of(*fullest), las_header::kWktBit);
 }
