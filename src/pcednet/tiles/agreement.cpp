@@ -223,22 +223,21 @@ void choose_forms(const std::vector<IndexedInput>& inputs, Said said, Plan& plan
 /// The records beside points that `file` has and the first input has not, or otherwise.
 void add_lost(const io::LasFile& first, const io::LasFile& file, std::vector<std::string>& lost) {
   const auto all_of = [](const io::LasFile& las) {
-    std::vector<io::LasRecord> all = las.records;
-    all.insert(all.end(), las.extended_records.begin(), las.extended_records.end());
+    std::vector<const io::LasRecord*> all = io::all_records(las);
     // These were compared, or are written anew, or are comments.
-    std::erase_if(all, [](const io::LasRecord& r) {
-      return r.user_id == io::kWktRecord.user_id || r.is(io::kExtraBytesRecord) ||
-             r.is(io::kLaszipRecord) || r.is(io::kCommentsRecord);
+    std::erase_if(all, [](const io::LasRecord* r) {
+      return r->user_id == io::kWktRecord.user_id || r->is(io::kExtraBytesRecord) ||
+             r->is(io::kLaszipRecord) || r->is(io::kCommentsRecord);
     });
     return all;
   };
-  const std::vector<io::LasRecord> kept = all_of(first);
-  for (const io::LasRecord& record : all_of(file)) {
-    const bool is_kept = std::any_of(kept.begin(), kept.end(), [&](const io::LasRecord& other) {
-      return other.user_id == record.user_id && other.record_id == record.record_id &&
-             other.data == record.data;
+  const std::vector<const io::LasRecord*> kept = all_of(first);
+  for (const io::LasRecord* record : all_of(file)) {
+    const bool is_kept = std::any_of(kept.begin(), kept.end(), [&](const io::LasRecord* other) {
+      return other->user_id == record->user_id && other->record_id == record->record_id &&
+             other->data == record->data;
     });
-    std::string name = fmt::format("{} {}", record.user_id, record.record_id);
+    std::string name = fmt::format("{} {}", record->user_id, record->record_id);
     if (!is_kept && std::find(lost.begin(), lost.end(), name) == lost.end()) {
       lost.push_back(std::move(name));
     }

@@ -31,10 +31,8 @@ ExtraMeaning meaning_of(const io::LasField& field, std::string_view descriptor) 
 /// What the records say on the coordinate system, verbatim.
 std::map<std::uint16_t, std::string> system_records(const io::LasFile& file) {
   std::map<std::uint16_t, std::string> found;
-  for (const auto* records : {&file.records, &file.extended_records}) {
-    for (const io::LasRecord& record : *records) {
-      if (record.user_id == io::kWktRecord.user_id) found[record.record_id] = record.data;
-    }
+  for (const io::LasRecord* record : io::all_records(file)) {
+    if (record->user_id == io::kWktRecord.user_id) found[record->record_id] = record->data;
   }
   return found;
 }
@@ -57,9 +55,7 @@ std::string name_of(const io::CoordinateSystem& system) {
 std::map<std::string, ExtraMeaning> extra_meanings(const io::LasFile& file) {
   std::vector<std::string> known;
   std::map<std::string, ExtraMeaning> meanings;
-  const auto record =
-      std::find_if(file.records.begin(), file.records.end(),
-                   [](const io::LasRecord& r) { return r.is(io::kExtraBytesRecord); });
+  const io::LasRecord* const record = io::find_record(file.records, io::kExtraBytesRecord);
   for (const io::LasField& field : io::las_extra_fields(file, known)) {
     if (!field.descriptor) continue;
     const std::string_view data = record->data;
@@ -95,13 +91,11 @@ TimeBase time_base(const io::LasFile& file) {
 
 bool has_waveforms(const io::LasFile& file) {
   // The records 100 to 354 describe them, the last holds them.
-  const auto is_of_waveforms = [](const io::LasRecord& record) {
-    return record.user_id == io::kWaveformsRecord.user_id &&
-           (record.record_id == io::kWaveformsRecord.record_id ||
-            (record.record_id >= 100 && record.record_id <= 354));
-  };
-  return std::any_of(file.records.begin(), file.records.end(), is_of_waveforms) ||
-         std::any_of(file.extended_records.begin(), file.extended_records.end(), is_of_waveforms);
+  return std::ranges::any_of(io::all_records(file), [](const io::LasRecord* record) {
+    return record->user_id == io::kWaveformsRecord.user_id &&
+           (record->record_id == io::kWaveformsRecord.record_id ||
+            (record->record_id >= 100 && record->record_id <= 354));
+  });
 }
 
 }  // namespace pcednet::tiles

@@ -14,16 +14,10 @@
 namespace pcednet::io {
 namespace {
 
-/// The record that describes the extra bytes; the end of the records if there is none.
-auto descriptor_record(LasFile& file) {
-  return std::find_if(file.records.begin(), file.records.end(),
-                      [](const LasRecord& r) { return r.is(kExtraBytesRecord); });
-}
-
-/// Its descriptors, whole ones.
-std::string descriptors_of(LasFile& file) {
-  const auto record = descriptor_record(file);
-  if (record == file.records.end()) return {};
+/// The descriptors of extra bytes, whole ones.
+std::string descriptors_of(const LasFile& file) {
+  const LasRecord* const record = find_record(file.records, kExtraBytesRecord);
+  if (!record) return {};
   return record->data.substr(0,
                              record->data.size() / las_descriptor::kBytes * las_descriptor::kBytes);
 }
@@ -82,10 +76,10 @@ class LayoutBuilder {
   void put_descriptors() {
     if (descriptors_.size() > UINT16_MAX) too_many();
     if (descriptors_ == descriptors_of(file_)) return;
-    const auto record = descriptor_record(file_);
+    LasRecord* const record = find_record(file_.records, kExtraBytesRecord);
     if (descriptors_.empty()) {
-      file_.records.erase(record);
-    } else if (record != file_.records.end()) {
+      file_.records.erase(file_.records.begin() + (record - file_.records.data()));
+    } else if (record) {
       record->data = std::move(descriptors_);
     } else {
       file_.records.push_back(
@@ -96,9 +90,9 @@ class LayoutBuilder {
   /// False, with zeros left in the field, if the cloud does not have it.
   bool add_known(const LasField& field) {
     taken_.insert(field.name);
-    const auto channel = std::find(std::begin(kChannels), std::end(kChannels), field.name);
-    if (channel != std::end(kChannels) && choices_.new_colours) {
-      const auto c = static_cast<std::size_t>(channel - std::begin(kChannels));
+    const auto channel = std::find(std::begin(kLasChannels), std::end(kLasChannels), field.name);
+    if (channel != std::end(kLasChannels) && choices_.new_colours) {
+      const auto c = static_cast<std::size_t>(channel - std::begin(kLasChannels));
       if (!cloud_.empty()) {
         layout_.columns.push_back({field, reinterpret_cast<const std::byte*>(&cloud_.colours[0][c]),
                                    sizeof(Rgb), LasColumn::Scale::kColour});
@@ -170,7 +164,8 @@ class LayoutBuilder {
     const auto& stored = cloud_.stored_normals;
     std::size_t axis = 0;
     const auto is_axis = [&] {
-      return field.name == kAxes[axis] || (!stored.empty() && field.name == stored[axis].name);
+      return field.name == kLasNormals[axis] ||
+             (!stored.empty() && field.name == stored[axis].name);
     };
     while (axis < 3 && !is_axis()) ++axis;
     if (axis == 3) return false;
@@ -215,7 +210,8 @@ class LayoutBuilder {
     if (cloud_.has_normals() && !has_normals_ && options_.new_normals) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const bool wide = keep_stored_ && cloud_.stored_normals[axis].type == ScalarType::kFloat64;
-        add_normal(new_field(kAxes[axis], wide ? ScalarType::kFloat64 : ScalarType::kFloat32));
+        add_normal(
+            new_field(kLasNormals[axis], wide ? ScalarType::kFloat64 : ScalarType::kFloat32));
       }
     }
     const std::vector<const Attribute*> left = attributes_left();
@@ -247,7 +243,8 @@ class LayoutBuilder {
 
   /// Whether the colours are written in its place.
   bool is_replaced(const std::string& name) const {
-    return std::find(std::begin(kChannels), std::end(kChannels), name) != std::end(kChannels) &&
+    return std::find(std::begin(kLasChannels), std::end(kLasChannels), name) !=
+               std::end(kLasChannels) &&
            taken_.count(name) != 0 && choices_.sources.unfit.count(name) == 0;
   }
 
@@ -292,9 +289,6 @@ class LayoutBuilder {
       descriptors_ += bytes;
     }
   }
-
-  static constexpr const char* kChannels[] = {"Red", "Green", "Blue"};
-  static constexpr const char* kAxes[] = {"NormalX", "NormalY", "NormalZ"};
 
   const PointCloud& cloud_;
   const WriteOptions& options_;

@@ -78,22 +78,18 @@ CoordinateSystem coordinate_system_of_text(const std::string& wkt, bool ask_for_
 /// `ask`: PROJ, for what the file leaves open.
 CoordinateSystem find_system(const LasFile& file, bool ask) {
   CoordinateSystem system;
-  for (const auto* records : {&file.records, &file.extended_records}) {
-    for (const LasRecord& record : *records) {
-      if (record.is(kWktRecord)) return coordinate_system_of_text(until_zero(record.data), ask);
-      if (record.is(kGeoKeysRecord)) system = coordinate_system_of_keys(record.data, ask);
-    }
+  for (const LasRecord* record : all_records(file)) {
+    if (record->is(kWktRecord)) return coordinate_system_of_text(until_zero(record->data), ask);
+    if (record->is(kGeoKeysRecord)) system = coordinate_system_of_keys(record->data, ask);
   }
   return system;
 }
 
 /// Whether they have any, with a code or without.
 bool has_geo_keys(const LasFile& file) {
-  const auto names_keys = [](const LasRecord& record) {
-    return record.is(kGeoKeysRecord) && !geo_keys(record.data).empty();
-  };
-  return std::any_of(file.records.begin(), file.records.end(), names_keys) ||
-         std::any_of(file.extended_records.begin(), file.extended_records.end(), names_keys);
+  return std::ranges::any_of(all_records(file), [](const LasRecord* record) {
+    return record->is(kGeoKeysRecord) && !geo_keys(record->data).empty();
+  });
 }
 
 }  // namespace

@@ -8,16 +8,10 @@
 namespace pcednet::io {
 namespace {
 
-bool has_field(unsigned format, const char* name) {
-  const std::vector<LasField> fields = las_standard_fields(format);
-  return std::any_of(fields.begin(), fields.end(),
-                     [&](const LasField& f) { return f.name == name; });
-}
-
 /// The point format of COPC with the colours of `format`.
 unsigned copc_format(unsigned format, const PointCloud& first) {
-  if (has_field(format, "Infrared")) return 8;
-  if (!has_field(format, "Red")) return 6;
+  if (las_format_has(format, "Infrared")) return 8;
+  if (!las_format_has(format, "Red")) return 6;
   const Attribute* infrared = find_attribute(first, "Infrared");
   return infrared && infrared->type == ScalarType::kUint16 ? 8 : 7;
 }

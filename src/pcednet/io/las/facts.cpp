@@ -17,12 +17,10 @@ std::string text_at(std::string_view header, std::size_t offset) {
 /// The citations share one text, separated by bars.
 std::string coordinate_system(const LasFile& file) {
   std::string citations;
-  for (const auto* records : {&file.records, &file.extended_records}) {
-    for (const LasRecord& record : *records) {
-      std::string text = until_zero(record.data);
-      if (record.is(kWktRecord)) return text;
-      if (record.is(kGeoTextRecord)) citations = text;
-    }
+  for (const LasRecord* record : all_records(file)) {
+    std::string text = until_zero(record->data);
+    if (record->is(kWktRecord)) return text;
+    if (record->is(kGeoTextRecord)) citations = text;
   }
   std::replace(citations.begin(), citations.end(), '|', ' ');
   return citations;
@@ -126,11 +124,9 @@ LasFacts las_facts(const InputFile& file) {
                  .extra_bytes = {},
                  .points_by_return = {},
                  .points_by_class = {}};
-  for (const auto* records : {&las.records, &las.extended_records}) {
-    for (const LasRecord& record : *records) {
-      facts.records.push_back(
-          {record.user_id, record.record_id, record.description, record.data.size()});
-    }
+  for (const LasRecord* record : all_records(las)) {
+    facts.records.push_back(
+        {record->user_id, record->record_id, record->description, record->data.size()});
   }
   for (const LasField& field : las_extra_fields(las, warnings)) {
     facts.extra_bytes.push_back(field.name);

@@ -84,7 +84,7 @@ FieldList list_fields(unsigned format) {
   }
   if (!is_one_of({0, 2})) list.add("GpsTime", ScalarType::kFloat64);
   if (is_one_of({2, 3, 5, 7, 8, 10})) {
-    for (const char* name : {"Red", "Green", "Blue"}) list.add(name, ScalarType::kUint16);
+    for (const char* name : kLasChannels) list.add(name, ScalarType::kUint16);
   }
   if (is_one_of({8, 10})) list.add("Infrared", ScalarType::kUint16);
   if (is_one_of({4, 5, 9, 10})) add_wave_packet(list);
@@ -134,6 +134,10 @@ std::vector<LasField> las_standard_fields(unsigned format) {
   return list_fields(format).take();
 }
 
+bool las_format_has(unsigned format, std::string_view field) {
+  return std::ranges::count(las_standard_fields(format), field, &LasField::name) > 0;
+}
+
 std::vector<LasField> las_extra_fields(const LasFile& file, std::vector<std::string>& warnings) {
   std::set<std::string> taken;
   for (const LasField& field : las_standard_fields(file.point_format())) taken.insert(field.name);
@@ -147,22 +151,19 @@ std::vector<LasField> las_extra_fields(const LasFile& file, std::vector<std::str
     offset += field.components * size_of(field.type);
     fields.push_back(std::move(field));
   };
-  for (const LasRecord& record : file.records) {
-    if (!record.is(kExtraBytesRecord)) continue;
-    for (std::size_t at = 0; at + las_descriptor::kBytes <= record.data.size();
-         at += las_descriptor::kBytes) {
-      LasField field =
-          read_descriptor(std::string_view(record.data).substr(at, las_descriptor::kBytes));
-      if (field.components == 0) continue;
-      if (offset + field.components * size_of(field.type) > end) {
-        warnings.push_back(fmt::format(
-            "extra bytes \"{}\" are described but not in the points' {} bytes", field.name, end));
-        break;
-      }
-      field.descriptor = at;
-      add(std::move(field));
+  const LasRecord* const record = find_record(file.records, kExtraBytesRecord);
+  const std::string_view descriptors = record ? std::string_view(record->data) : "";
+  for (std::size_t at = 0; at + las_descriptor::kBytes <= descriptors.size();
+       at += las_descriptor::kBytes) {
+    LasField field = read_descriptor(descriptors.substr(at, las_descriptor::kBytes));
+    if (field.components == 0) continue;
+    if (offset + field.components * size_of(field.type) > end) {
+      warnings.push_back(fmt::format(
+          "extra bytes \"{}\" are described but not in the points' {} bytes", field.name, end));
+      break;
     }
-    break;
+    field.descriptor = at;
+    add(std::move(field));
   }
   if (offset < end) add({"ExtraBytes", ScalarType::kUint8, 0, end - offset});
   return fields;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pcednet::io {
 namespace {
@@ -136,6 +137,23 @@ std::string element_bytes(const PointCloud& cloud, const std::string& name) {
 
 LasRecord new_record(const LasRecordKind& kind, std::string description, std::string data) {
   return {std::string(kind.user_id), kind.record_id, std::move(description), std::move(data)};
+}
+
+const LasRecord* find_record(const std::vector<LasRecord>& records, const LasRecordKind& kind) {
+  const auto found = std::find_if(records.begin(), records.end(),
+                                  [&](const LasRecord& record) { return record.is(kind); });
+  return found == records.end() ? nullptr : &*found;
+}
+
+LasRecord* find_record(std::vector<LasRecord>& records, const LasRecordKind& kind) {
+  return const_cast<LasRecord*>(find_record(std::as_const(records), kind));
+}
+
+std::vector<const LasRecord*> all_records(const LasFile& file) {
+  std::vector<const LasRecord*> all;
+  for (const LasRecord& record : file.records) all.push_back(&record);
+  for (const LasRecord& record : file.extended_records) all.push_back(&record);
+  return all;
 }
 
 bool LasFile::counts_wide() const {

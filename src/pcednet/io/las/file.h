@@ -41,6 +41,10 @@ struct LasRecord {
 
 LasRecord new_record(const LasRecordKind& kind, std::string description, std::string data);
 
+/// The first record of that kind; null if there is none.
+const LasRecord* find_record(const std::vector<LasRecord>& records, const LasRecordKind& kind);
+LasRecord* find_record(std::vector<LasRecord>& records, const LasRecordKind& kind);
+
 /// The number of type T at `offset` of little-endian bytes (the only order LAS has).
 template <typename T>
 T number_at(std::string_view bytes, std::size_t offset) {
@@ -100,8 +104,9 @@ constexpr unsigned kLasFormats = 11;
 /// Bytes of a record of a point format of 0 ... 10, without extra bytes.
 std::size_t las_format_bytes(unsigned format);
 
-/// The fields of a point format, X, Y and Z first.
+/// The fields of a point format, X, Y and Z first, and whether one has that name.
 std::vector<LasField> las_standard_fields(unsigned format);
+bool las_format_has(unsigned format, std::string_view field);
 
 /// The extra bytes of the file's records, as its record LASF_Spec 4 describes them: unique names
 /// (edge_class, p_sharp and p_smooth as scalar_...); bytes that it does not describe are
@@ -118,6 +123,9 @@ LasFile read_las_file(const InputFile& file, std::vector<std::string>& warnings)
 
 /// The latest end of the points: the records behind them, or the end of the file.
 std::uint64_t las_points_limit(const InputFile& file, const LasFile& las);
+
+/// All records, extended ones last.
+std::vector<const LasRecord*> all_records(const LasFile& file);
 
 /// From its WKT, otherwise from its GeoTIFF keys; never asks PROJ.
 CoordinateSystem coordinate_system_of(const LasFile& file);

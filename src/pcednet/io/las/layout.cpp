@@ -221,9 +221,7 @@ std::vector<std::string> las_losses(const PointCloud& first, const LasChoices& c
   if (!choices.exact) {
     losses.push_back(fmt::format("digits of positions beyond steps of {}", file.scale(0)));
   }
-  const auto standard = las_standard_fields(file.point_format());
-  const bool has_colours = std::any_of(standard.begin(), standard.end(),
-                                       [](const LasField& f) { return f.name == "Red"; });
+  const bool has_colours = las_format_has(file.point_format(), "Red");
   if (!first.colours.empty() && !has_colours && !colours_follow_classes(first)) {
     losses.push_back(fmt::format("colours: {}point format {} has none",
                                  choices.promoted ? "" : "the input's ", file.point_format()));

@@ -28,12 +28,9 @@ void LazReader::fail(std::uint64_t byte, const std::string& what) const {
 
 LazReader::LazReader(const InputFile& file, LasFile& las, std::vector<std::string>& warnings)
     : file_(file), begin_(las.points_offset()), record_length_(las.record_length()) {
-  const auto found = std::find_if(las.records.begin(), las.records.end(),
-                                  [](const LasRecord& r) { return r.is(kLaszipRecord); });
-  if (found == las.records.end()) {
-    fail(las_header::kPointFormat, "compressed, but without a laszip record");
-  }
-  read_items(found->data);
+  const LasRecord* const record = find_record(las.records, kLaszipRecord);
+  if (!record) fail(las_header::kPointFormat, "compressed, but without a laszip record");
+  read_items(record->data);
   const std::uint64_t points = las.point_count();
   const bool holds_all = compressor_ == kUnchunked ? may_stand_for(file_.size() - begin_, points)
                                                    : points / kSymbolsPerByte <= file_.size();

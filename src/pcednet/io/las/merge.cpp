@@ -13,12 +13,10 @@ namespace {
 /// only codes.
 bool name_system_in_wkt(LasFile& file) {
   bool keys = false;
-  for (const auto* records : {&file.records, &file.extended_records}) {
-    for (const LasRecord& record : *records) {
-      if (record.is(kWktRecord)) return true;
-      constexpr std::size_t kBytesBeforeKeys = 8;
-      keys = keys || (record.is(kGeoKeysRecord) && record.data.size() > kBytesBeforeKeys);
-    }
+  for (const LasRecord* record : all_records(file)) {
+    if (record->is(kWktRecord)) return true;
+    constexpr std::size_t kBytesBeforeKeys = 8;
+    keys = keys || (record->is(kGeoKeysRecord) && record->data.size() > kBytesBeforeKeys);
   }
   if (!keys) return true;
   const std::string wkt = definition_of(coordinate_system_of(file), WktVersion::k1);
@@ -37,21 +35,19 @@ void set_encoding(LasFile& file, unsigned encoding, unsigned mask) {
   put_number(file.header, las_header::kGlobalEncoding, static_cast<std::uint16_t>(set));
 }
 
-bool holds_field(const LasFile& file, std::string_view name) {
-  const std::vector<LasField> fields = las_standard_fields(file.point_format());
-  return std::ranges::find(fields, name, &LasField::name) != fields.end();
-}
-
 unsigned common_format(std::span<const LasFile> files) {
   const unsigned first = files.front().point_format();
   const auto any = [&](auto&& is_so) { return std::ranges::any_of(files, is_so); };
+  const auto any_has = [&](const char* field) {
+    return any([&](const LasFile& file) { return las_format_has(file.point_format(), field); });
+  };
   if (!any([&](const LasFile& file) { return file.point_format() != first; })) return first;
-  const bool colours = any([](const LasFile& file) { return holds_field(file, "Red"); });
+  const bool colours = any_has("Red");
   if (any([](const LasFile& file) { return file.point_format() >= 6; })) {
-    if (any([](const LasFile& file) { return holds_field(file, "Infrared"); })) return 8;
+    if (any_has("Infrared")) return 8;
     return colours ? 7 : 6;
   }
-  const bool times = any([](const LasFile& file) { return holds_field(file, "GpsTime"); });
+  const bool times = any_has("GpsTime");
   return (colours ? 2 : 0) + (times ? 1 : 0);
 }
 
@@ -66,8 +62,7 @@ ExtraBytes extra_bytes_of(std::span<const LasFile> files) {
   std::set<std::string> names;
   std::vector<std::string> known;
   for (const LasFile& file : files) {
-    const auto record =
-        std::ranges::find_if(file.records, [](const auto& r) { return r.is(kExtraBytesRecord); });
+    const LasRecord* const record = find_record(file.records, kExtraBytesRecord);
     for (const LasField& field : las_extra_fields(file, known)) {
       if (!field.descriptor || !names.insert(field.name).second) continue;
       all.descriptors += record->data.substr(*field.descriptor, las_descriptor::kBytes);
@@ -79,9 +74,7 @@ ExtraBytes extra_bytes_of(std::span<const LasFile> files) {
 
 void set_extra_bytes(const ExtraBytes& extra, LasFile& file) {
   if (extra.descriptors.empty()) return;
-  const auto record =
-      std::ranges::find_if(file.records, [](const auto& r) { return r.is(kExtraBytesRecord); });
-  if (record != file.records.end()) {
+  if (LasRecord* const record = find_record(file.records, kExtraBytesRecord)) {
     record->data = extra.descriptors;
   } else {
     file.records.push_back(new_record(kExtraBytesRecord, "extra bytes", extra.descriptors));
@@ -97,15 +90,12 @@ void take_system(std::span<const LasFile> files, LasFile& merged) {
   auto fullest = std::ranges::find_if(files, names_heights);
   if (fullest == files.end()) fullest = std::ranges::find_if(files, names_system);
   if (fullest == files.end() || fullest == files.begin()) return;
-  for (auto records : {&LasFile::records, &LasFile::extended_records}) {
-    std::erase_if(merged.*records, is_of_system);
-  }
-  for (const auto* records : {&fullest->records, &fullest->extended_records}) {
-    for (const LasRecord& record : *records) {
-      if (!is_of_system(record)) continue;
-      const bool fits = record.data.size() <= UINT16_MAX;  // its length, of 16 bits
-      (fits ? merged.records : merged.extended_records).push_back(record);
-    }
+  std::erase_if(merged.records, is_of_system);
+  std::erase_if(merged.extended_records, is_of_system);
+  for (const LasRecord* record : all_records(*fullest)) {
+    if (!is_of_system(*record)) continue;
+    const bool fits = record->data.size() <= UINT16_MAX;  // its length, of 16 bits
+    (fits ? merged.records : merged.extended_records).push_back(*record);
   }
   set_encoding(merged, encoding_of(*fullest), las_header::kWktBit);
 }

@@ -35,10 +35,9 @@ void take_column(const LasField& field, const std::byte* rows, std::size_t strid
 
 /// Moves NormalX, NormalY and NormalZ to the normals.
 void promote_normals(PointCloud& cloud) {
-  std::array<const Attribute*, 3> axes = {find_attribute(cloud, "NormalX"),
-                                          find_attribute(cloud, "NormalY"),
-                                          find_attribute(cloud, "NormalZ")};
-  for (const Attribute* axis : axes) {
+  std::array<const Attribute*, 3> axes = {};
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    const Attribute* const axis = axes[a] = find_attribute(cloud, kLasNormals[a]);
     if (axis == nullptr || axis->components != 1) return;
     if (axis->type != ScalarType::kFloat32 && axis->type != ScalarType::kFloat64) return;
   }
@@ -47,9 +46,7 @@ void promote_normals(PointCloud& cloud) {
     cloud.normals[i] = Vec3(axes[0]->value(i), axes[1]->value(i), axes[2]->value(i));
   }
   cloud.stored_normals = {*axes[0], *axes[1], *axes[2]};
-  std::erase_if(cloud.attributes, [](const Attribute& a) {
-    return a.name == "NormalX" || a.name == "NormalY" || a.name == "NormalZ";
-  });
+  for (const char* name : kLasNormals) erase_attribute(cloud, name);
 }
 
 void promote_label(PointCloud& cloud) {
@@ -59,15 +56,14 @@ void promote_label(PointCloud& cloud) {
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     cloud.labels[i] = static_cast<std::uint8_t>(label->bytes[i]);
   }
-  std::erase_if(cloud.attributes, [](const Attribute& a) { return a.name == "label"; });
+  erase_attribute(cloud, "label");
 }
 
 /// The first numbers of Red, Green and Blue; null if there are none.
 std::array<const std::byte*, 3> colour_channels(const PointCloud& cloud) {
   std::array<const std::byte*, 3> first = {};
-  static constexpr const char* kNames[] = {"Red", "Green", "Blue"};
   for (std::size_t c = 0; c < 3; ++c) {
-    const Attribute* channel = find_attribute(cloud, kNames[c]);
+    const Attribute* channel = find_attribute(cloud, kLasChannels[c]);
     const bool fits =
         channel != nullptr && channel->components == 1 && channel->type == ScalarType::kUint16;
     if (!fits) return {};

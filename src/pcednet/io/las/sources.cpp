@@ -15,8 +15,6 @@ namespace {
 /// Whole numbers up to here are doubles.
 constexpr double kLargestWhole = 9007199254740992.0;
 
-constexpr const char* kChannelNames[] = {"Red", "Green", "Blue"};
-
 /// The whole numbers that a field holds.
 struct WholeRange {
   double least = 0.0, largest = 0.0;
@@ -165,14 +163,14 @@ const Attribute* las_source(const PointCloud& cloud, const LasSources& sources,
 std::array<const Attribute*, 3> las_channels(const PointCloud& cloud, const LasSources& sources) {
   std::array<const Attribute*, 3> channels = {};
   for (std::size_t c = 0; c < 3; ++c) {
-    channels[c] = las_source(cloud, sources, kChannelNames[c], ScalarType::kUint16);
+    channels[c] = las_source(cloud, sources, kLasChannels[c], ScalarType::kUint16);
     if (!channels[c]) return {};
   }
   return channels;
 }
 
 bool may_have_channels(const PointCloud& first) {
-  return std::all_of(std::begin(kChannelNames), std::end(kChannelNames), [&](const char* name) {
+  return std::all_of(std::begin(kLasChannels), std::end(kLasChannels), [&](const char* name) {
     return find_named(first, name, ScalarType::kUint16, {}) != nullptr;
   });
 }
