@@ -31,8 +31,7 @@ using Index =
 OrderedPoints order_points(std::span<const Vec3> positions) {
   OrderedPoints points;
   points.original = curve_order(positions);
-  points.positions.reserve(points.original.size());
-  for (const std::uint32_t i : points.original) points.positions.push_back(positions[i]);
+  points.positions = in_order(positions, points.original);
   return points;
 }
 
