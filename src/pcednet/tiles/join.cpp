@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "pcednet/core/error.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/parts.h"
@@ -14,29 +12,17 @@
 namespace pcednet::tiles {
 namespace {
 
-/// All chunks of all tiles, one after the other.
-class TileStream {
- public:
-  explicit TileStream(const Plan& plan) : plan_(plan) {
-    narrow_ = std::all_of(plan.inputs.begin(), plan.inputs.end(),
-                          [](const PlannedInput& input) { return input.narrow_colours; });
-  }
-
-  /// Calls `visit` until it returns false.
-  void each(const std::function<bool(const PointCloud&)>& visit) const {
-    for (const Tile& tile : plan_.tiles) {
-      const auto reader = open_chunks(tile.output);
-      reader->set_narrow_colours(narrow_);
-      for (std::size_t p = 0; p < reader->parts(); ++p) {
-        if (!visit(read_finished(*reader, p))) return;
-      }
+/// Calls `visit` with all chunks of all tiles, one after the other, until it returns false.
+void each_chunk(const Plan& plan, const std::function<bool(const PointCloud&)>& visit) {
+  const bool narrow = plan.narrow_colours();
+  for (const Tile& tile : plan.tiles) {
+    const auto reader = open_chunks(tile.output);
+    reader->set_narrow_colours(narrow);
+    for (std::size_t p = 0; p < reader->parts(); ++p) {
+      if (!visit(read_finished(*reader, p))) return;
     }
   }
-
- private:
-  const Plan& plan_;
-  bool narrow_ = false;
-};
+}
 
 }  // namespace
 
@@ -85,9 +71,8 @@ Joined join(const Plan& plan, const std::filesystem::path& path, Overwrite overw
             const Progress* progress) {
   check_joins(path);
   check_all_done(plan);
-  const TileStream tiles(plan);
   PointCloud first;
-  tiles.each([&](const PointCloud& part) {
+  each_chunk(plan, [&](const PointCloud& part) {
     first = part;
     return false;
   });
@@ -96,16 +81,17 @@ Joined join(const Plan& plan, const std::filesystem::path& path, Overwrite overw
   io::PartOutline outline{.points = plan.points(), .first = &first, .is_las = is_las};
   outline.each_part = [&](const auto& visit) {
     // The steps and columns of tiles made of LAS are the same in all.
-    if (is_las && to_las)
+    if (is_las && to_las) {
       visit(first);
-    else
-      tiles.each(visit);
+    } else {
+      each_chunk(plan, visit);
+    }
   };
   const auto writer =
       formats::create_parts(path, outline, {.overwrite = overwrite, .progress = progress});
   Joined joined{.points = 0, .losses = writer->losses};
   Stage stage(progress, "join", plan.points());
-  tiles.each([&](const PointCloud& part) {
+  each_chunk(plan, [&](const PointCloud& part) {
     writer->append(part);
     joined.points += part.size();
     stage.advance(part.size());

@@ -363,6 +363,10 @@ std::size_t Plan::points() const {
       [](std::size_t sum, const PlannedInput& input) { return sum + input.points(); });
 }
 
+bool Plan::narrow_colours() const {
+  return std::ranges::all_of(inputs, &PlannedInput::narrow_colours);
+}
+
 BoundingBox Plan::box_of(const Tile& tile, double around) const {
   BoundingBox found = box;
   const double left = grid.edge(tile.column), bottom = grid.edge(tile.row);

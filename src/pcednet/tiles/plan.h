@@ -85,6 +85,7 @@ struct Plan {
   std::vector<std::string> notes = {};  ///< for the user, one sentence each
 
   std::size_t points() const;
+  bool narrow_colours() const;  ///< of all inputs
   /// The box of the core of a tile, extended by `around`, without bounds in z.
   BoundingBox box_of(const Tile& tile, double around) const;
 };

@@ -22,10 +22,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t kOpenFiles = 256;
 constexpr const char* kUnsorted = "unsorted_";
 
-bool has_narrow_colours(const Plan& plan) {
-  return std::ranges::all_of(plan.inputs, &PlannedInput::narrow_colours);
-}
-
 /// The files of the copies: LAS and PLY, which are read from any place.
 fs::path copy_path(const fs::path& folder, const Plan& plan, std::size_t tile, const char* prefix) {
   const std::size_t digits = std::to_string(plan.tiles.size() - 1).size();
@@ -158,7 +154,7 @@ void scatter(const fs::path& folder, const Plan& plan, const PointCloud& outline
 void sort_file(const fs::path& from, const fs::path& to, const Plan& plan,
                const PointCloud& outline) {
   const auto reader = open_chunks(from);
-  reader->set_narrow_colours(has_narrow_colours(plan));
+  reader->set_narrow_colours(plan.narrow_colours());
   PointCloud all = outline;
   for (std::size_t p = 0; p < reader->parts(); ++p) {
     const PointCloud part = read_finished(*reader, p);
@@ -201,7 +197,7 @@ void sort_inputs(const SortRequest& request, Plan& plan, const Progress* progres
     copies.count_sorted();
     std::vector<std::string> known;
     const auto see = [](const PointCloud&) {};
-    sorted.push_back(index_input(path, progress, known, see, has_narrow_colours(plan)).input);
+    sorted.push_back(index_input(path, progress, known, see, plan.narrow_colours()).input);
   }
   copies.keep();
   plan.inputs = std::move(sorted);
