@@ -8,15 +8,10 @@
 #include <cmath>
 #include <pugixml.hpp>
 
+#include "pcednet/io/text_scan.h"
+
 namespace pcednet::io {
 namespace {
-
-/// `text` without surrounding blanks.
-std::string_view bare(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r\n";
-  const std::size_t begin = std::min(text.find_first_not_of(kBlank), text.size());
-  return text.substr(begin, text.find_last_not_of(kBlank) + 1 - begin);
-}
 
 /// Reads numbers and names out of the XML, and knows which file to blame.
 class Parser {
@@ -28,7 +23,7 @@ class Parser {
   /// The number that `text` spells; `otherwise` if there is none.
   template <typename Number>
   Number number(std::string_view text, Number otherwise, const char* what) const {
-    text = bare(text);
+    text = trim(text);
     if (text.starts_with('+')) text.remove_prefix(1);
     if (text.empty()) return otherwise;
     Number value = {};
@@ -57,7 +52,7 @@ class Parser {
 };
 
 std::string one_line(const char* text) {
-  std::string line(bare(text));
+  std::string line(trim(text));
   std::replace_if(
       line.begin(), line.end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
   return line;
