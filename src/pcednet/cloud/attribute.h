@@ -45,6 +45,10 @@ constexpr std::size_t size_of(ScalarType type) {
   return 0;
 }
 
+constexpr bool is_floating(ScalarType type) {
+  return type == ScalarType::kFloat32 || type == ScalarType::kFloat64;
+}
+
 template <typename T>
 constexpr ScalarType scalar_type_of() {
   if constexpr (std::is_same_v<T, std::int8_t>)
@@ -97,6 +101,14 @@ decltype(auto) visit_scalar(ScalarType type, Action&& action) {
   return action(double{});
 }
 
+/// The number of that type at `bytes`, which need not be aligned, as a double.
+inline double to_double(ScalarType type, const std::byte* bytes) {
+  return visit_scalar(type, [&](auto number) {
+    std::memcpy(&number, bytes, sizeof number);
+    return static_cast<double>(number);
+  });
+}
+
 /// Whether a number, its fraction aside, lies in the range of an integer type.
 template <typename Integer>
 bool is_in_range(double value) {
@@ -117,12 +129,7 @@ struct Attribute {
 
   /// Number `component` of `point`, as a double.
   double value(std::size_t point, std::size_t component = 0) const {
-    return visit_scalar(type, [&](auto zero) {
-      decltype(zero) number;
-      std::memcpy(&number, bytes.data() + point * stride() + component * sizeof number,
-                  sizeof number);
-      return static_cast<double>(number);
-    });
+    return to_double(type, bytes.data() + point * stride() + component * size_of(type));
   }
 };
 

@@ -70,9 +70,7 @@ void add_vectors(std::vector<ColumnView>& columns, const std::vector<Vec3>& vect
 
 void add_normals(std::vector<ColumnView>& columns, const PointCloud& cloud,
                  const std::vector<std::string>& names) {
-  const auto is_float = [](const Attribute& axis) {
-    return axis.type == ScalarType::kFloat32 || axis.type == ScalarType::kFloat64;
-  };
+  const auto is_float = [](const Attribute& axis) { return is_floating(axis.type); };
   const auto& stored = cloud.stored_normals;
   if (!cloud.has_normals()) return;
   if (!std::all_of(stored.begin(), stored.end(), is_float) || !normals_are_stored(cloud)) {

@@ -51,6 +51,14 @@ std::vector<std::string> warnings_of(const PartTally& tally);
 /// Calls `visit` with part after part, finished, until it returns false.
 using EachPart = std::function<void(const std::function<bool(const PointCloud&)>& visit)>;
 
+/// Whether all parts are so; reads none after the first that is not.
+template <typename IsSo>
+bool all_parts(const EachPart& each_part, const IsSo& is_so) {
+  bool all = true;
+  each_part([&](const PointCloud& part) { return all = is_so(part); });
+  return all;
+}
+
 /// Writes a cloud part by part; the file appears under its name at commit() only.
 class PartWriter {
  public:

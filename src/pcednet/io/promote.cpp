@@ -40,9 +40,7 @@ ColourScale find_scale(const std::array<const Attribute*, 3>& channels, std::siz
       largest = std::max(largest, value);
     }
   }
-  const bool floating =
-      channels[0]->type == ScalarType::kFloat32 || channels[0]->type == ScalarType::kFloat64;
-  if (floating && largest <= 1.0) return ColourScale::kUnit;
+  if (is_floating(channels[0]->type) && largest <= 1.0) return ColourScale::kUnit;
   if (whole && largest <= 255.0) return ColourScale::kBytes;
   return all_word ? ColourScale::kWords : ColourScale::kNone;
 }

@@ -15,7 +15,6 @@ namespace {
 
 constexpr const char* kRank = "ScanAngleRank";  ///< of point formats 0 to 5, in degrees
 constexpr const char* kAngle = "ScanAngle";     ///< of 6 to 10
-constexpr double kDegreesPerStep = 0.006;
 
 bool is_same_column(const Attribute& a, const Attribute& b) {
   return a.name == b.name && a.type == b.type && a.components == b.components;
@@ -28,7 +27,7 @@ bool has_columns_of(const PointCloud& outline, const PointCloud& part) {
 Attribute angles_from(const Attribute& ranks) {
   std::vector<std::int16_t> steps(ranks.bytes.size() / ranks.stride());
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    steps[i] = static_cast<std::int16_t>(std::lround(ranks.value(i) / kDegreesPerStep));
+    steps[i] = static_cast<std::int16_t>(std::lround(ranks.value(i) / io::kLasAngleStep));
   }
   return make_attribute(kAngle, steps);
 }

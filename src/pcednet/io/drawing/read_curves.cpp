@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <optional>
 
 #include "pcednet/io/drawing/chain.h"
@@ -112,10 +111,7 @@ std::vector<EdgeRow> edge_rows(ForeignElement& foreign, std::size_t vertices,
   for (std::uint64_t i = 0; i < edge.count; ++i) {
     row = walk_ply_row(edge, row, end, false,
                        [&](std::size_t p, const std::byte* number, ScalarType type, bool) {
-                         values[p] = visit_scalar(type, [&](auto value) {
-                           std::memcpy(&value, number, sizeof value);
-                           return static_cast<double>(value);
-                         });
+                         values[p] = to_double(type, number);
                        });
     try {
       rows.push_back({vertex_index(values[properties.from], vertices),

@@ -162,9 +162,8 @@ std::vector<Attribute> plan_attributes(const std::vector<E57Scan>& scans) {
         return f.is_number() && f.name == attribute.name;
       });
     };
-    const bool is_float = attribute.type >= ScalarType::kFloat32;
     // Only a float can express a missing number.
-    if (!is_float && std::any_of(scans.begin(), scans.end(), lacks)) {
+    if (!is_floating(attribute.type) && std::any_of(scans.begin(), scans.end(), lacks)) {
       attribute.type = ScalarType::kFloat64;
     }
   }
@@ -334,7 +333,8 @@ class E57PartReader : public PartReader {
       std::size_t valid = scans[s].points;
       if (must_look && valid > 0) {
         const E57Collector looked = collect(s);
-        std::erase_if(silent_, [&](const auto& name) { return looked.silent().count(name) == 0; });
+        const std::set<std::string> silent = looked.silent();
+        std::erase_if(silent_, [&](const auto& name) { return silent.count(name) == 0; });
         valid = looked.size();
       }
       if (valid > 0) with_points_.push_back(s);

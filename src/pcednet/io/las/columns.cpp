@@ -171,10 +171,9 @@ class LayoutBuilder {
     if (axis == 3) return false;
     const bool as_stored = keep_stored_ && !stored.empty() && stored[axis].type == field.type &&
                            stored[axis].bytes.size() == cloud_.size() * size_of(field.type);
-    const bool is_float = field.type == ScalarType::kFloat32 || field.type == ScalarType::kFloat64;
     if (as_stored) {
       copy(field, stored[axis]);
-    } else if (cloud_.has_normals() && is_float) {
+    } else if (cloud_.has_normals() && is_floating(field.type)) {
       const auto* number = cloud_.normals[0].data() + axis;
       layout_.columns.push_back({field, reinterpret_cast<const std::byte*>(number), sizeof(Vec3),
                                  LasColumn::Scale::kNormal});
@@ -303,16 +302,11 @@ class LayoutBuilder {
   bool has_normals_ = false, has_label_ = false;
 };
 
-double number_of(ScalarType type, const std::byte* from) {
-  return visit_scalar(type,
-                      [&](auto zero) { return static_cast<double>(load<decltype(zero)>(from)); });
-}
-
 }  // namespace
 
 void write_scaled(const LasColumn& column, const std::byte* from, char* to) {
   if (column.scale == LasColumn::Scale::kCast) {
-    const double number = number_of(column.stored, from);
+    const double number = to_double(column.stored, from);
     return visit_scalar(column.field.type,
                         [&](auto zero) { store(to, static_cast<decltype(zero)>(number)); });
   }
@@ -321,9 +315,8 @@ void write_scaled(const LasColumn& column, const std::byte* from, char* to) {
     return store(to, wide);
   }
   if (column.scale == LasColumn::Scale::kAngle) {
-    constexpr double kDegreesPerStep = 0.006;
-    const double degrees = number_of(column.stored, from);
-    const auto steps = static_cast<std::int16_t>(std::lround(degrees / kDegreesPerStep));
+    const double degrees = to_double(column.stored, from);
+    const auto steps = static_cast<std::int16_t>(std::lround(degrees / kLasAngleStep));
     return store(to, steps);
   }
   const auto number = load<double>(from);

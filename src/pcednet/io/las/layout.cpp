@@ -37,9 +37,7 @@ bool is_exact(const PointCloud& cloud, const LasFile& file) {
 }
 
 bool all_exact(const PartOutline& outline, const LasFile& file) {
-  bool exact = true;
-  outline.each_part([&](const PointCloud& part) { return exact = exact && is_exact(part, file); });
-  return exact;
+  return all_parts(outline.each_part, [&](const PointCloud& part) { return is_exact(part, file); });
 }
 
 bool fits(const BoundingBox& box, const LasFile& file) {
@@ -160,16 +158,14 @@ bool colours_follow_classes(const PointCloud& cloud) {
 }
 
 bool labels_are_classes(const PartOutline& outline) {
-  bool same = outline.first->has_labels();
   const auto is_class = [](const PointCloud& part) {
     const Attribute* edge_class = find_attribute(part, "scalar_edge_class");
     return edge_class && edge_class->type == ScalarType::kUint8 &&
            edge_class->bytes.size() == part.labels.size() &&
            std::memcmp(edge_class->bytes.data(), part.labels.data(), part.labels.size()) == 0;
   };
-  if (!same || !is_class(*outline.first)) return false;
-  outline.each_part([&](const PointCloud& part) { return same = same && is_class(part); });
-  return same;
+  if (!outline.first->has_labels() || !is_class(*outline.first)) return false;
+  return all_parts(outline.each_part, is_class);
 }
 
 LasChoices choices_of(const std::filesystem::path& path, const PartOutline& outline) {

@@ -85,6 +85,8 @@ inline constexpr LasRecordKind kWktRecord{"LASF_Projection", 2112},
     kLaszipRecord{"laszip encoded", 22204}, kCopcInfoRecord{"copc", 1},
     kCopcHierarchyRecord{"copc", 1000}, kCommentsRecord{"pcednet", 1};
 
+inline constexpr double kLasAngleStep = 0.006;  ///< degrees of ScanAngle, in formats 6 to 10
+
 /// The names of the fields of colours, and of the extra bytes that hold normals.
 inline constexpr const char* kLasChannels[] = {"Red", "Green", "Blue"};
 inline constexpr const char* kLasNormals[] = {"NormalX", "NormalY", "NormalZ"};

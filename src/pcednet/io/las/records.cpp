@@ -39,7 +39,7 @@ void promote_normals(PointCloud& cloud) {
   for (std::size_t a = 0; a < axes.size(); ++a) {
     const Attribute* const axis = axes[a] = find_attribute(cloud, kLasNormals[a]);
     if (axis == nullptr || axis->components != 1) return;
-    if (axis->type != ScalarType::kFloat32 && axis->type != ScalarType::kFloat64) return;
+    if (!is_floating(axis->type)) return;
   }
   cloud.normals.resize(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {

@@ -39,10 +39,6 @@ WholeRange range_of_type() {
           std::min(static_cast<double>(std::numeric_limits<T>::max()), kLargestWhole)};
 }
 
-bool is_floating(ScalarType type) {
-  return type == ScalarType::kFloat32 || type == ScalarType::kFloat64;
-}
-
 std::optional<WholeRange> range_of(const LasField& field) {
   if (field.bits > 0) return WholeRange{0.0, std::exp2(field.bits) - 1.0};
   if (is_floating(field.type)) return std::nullopt;
@@ -178,7 +174,6 @@ bool may_have_channels(const PointCloud& first) {
 bool colours_are_new(const PartOutline& outline, const LasSources& sources) {
   if (outline.first->colours.empty()) return false;
   if (!las_channels(*outline.first, sources)[0]) return true;
-  bool narrow = true, same = true;
   /// Whether `holds(number, colour)` is true for all channels of the part.
   const auto in_all = [&](const PointCloud& part, const auto& holds) {
     const auto channels = las_channels(part, sources);
@@ -190,16 +185,15 @@ bool colours_are_new(const PartOutline& outline, const LasSources& sources) {
     }
     return true;
   };
-  outline.each_part([&](const PointCloud& part) {
-    return narrow = narrow && in_all(part, [](unsigned number, unsigned) { return number <= 255; });
+  const bool narrow = all_parts(outline.each_part, [&](const PointCloud& part) {
+    return in_all(part, [](unsigned number, unsigned) { return number <= 255; });
   });
-  outline.each_part([&](const PointCloud& part) {
-    return same = same && in_all(part, [&](unsigned number, unsigned colour) {
-                    if (narrow) return number == colour;
-                    return (number + 128) / 257 == colour || number >> 8 == colour;
-                  });
+  return !all_parts(outline.each_part, [&](const PointCloud& part) {
+    return in_all(part, [&](unsigned number, unsigned colour) {
+      if (narrow) return number == colour;
+      return (number + 128) / 257 == colour || number >> 8 == colour;
+    });
   });
-  return !same;
 }
 
 }  // namespace pcednet::io

@@ -46,7 +46,7 @@ KeptHeader kept_header(const PointCloud& cloud) {
 }
 
 char type_letter(ScalarType type) {
-  if (type == ScalarType::kFloat32 || type == ScalarType::kFloat64) return 'F';
+  if (is_floating(type)) return 'F';
   return visit_scalar(type, [](auto zero) { return decltype(zero)(-1) < decltype(zero)(0); }) ? 'I'
                                                                                               : 'U';
 }

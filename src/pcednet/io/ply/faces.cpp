@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <string_view>
 
 #include "pcednet/core/error.h"
@@ -21,14 +20,12 @@ class Rows {
   std::uint64_t face = 0;  ///< its number, for messages
 
   double number(ScalarType type) {
-    return visit_scalar(type, [&](auto value) {
-      if (bytes_.size() - at_ < sizeof value) {
-        throw Error(ErrorKind::kUnreadable, fmt::format("the data end in face {}", face));
-      }
-      std::memcpy(&value, bytes_.data() + at_, sizeof value);
-      at_ += sizeof value;
-      return static_cast<double>(value);
-    });
+    if (bytes_.size() - at_ < size_of(type)) {
+      throw Error(ErrorKind::kUnreadable, fmt::format("the data end in face {}", face));
+    }
+    const double number = to_double(type, bytes_.data() + at_);
+    at_ += size_of(type);
+    return number;
   }
 
  private:

@@ -95,8 +95,7 @@ PlyProperty parse_property(const Words& words, const HeaderLines& lines) {
   PlyProperty property;
   if (words.size() == 5 && words[1] == "list") {
     property.length_type = type_of(words[2]);
-    if (property.length_type == ScalarType::kFloat32 ||
-        property.length_type == ScalarType::kFloat64) {
+    if (is_floating(*property.length_type)) {
       throw lines.error("the length of a list must be of an integer type");
     }
   } else if (words.size() != 3) {

@@ -57,10 +57,7 @@ bool is_plain(const std::string& extension, const PartOutline& outline) {
   const bool more = !cloud.colours.empty() || cloud.has_labels() || !cloud.attributes.empty();
   if (extension == ".csv" || more || cloud.empty()) return false;
   if (!cloud.has_normals()) return true;
-  bool all_show = extension == ".xyz";
-  outline.each_part(
-      [&](const PointCloud& part) { return all_show = all_show && normals_show(part); });
-  return all_show;
+  return extension == ".xyz" && all_parts(outline.each_part, normals_show);
 }
 
 std::string header_of(const std::string& extension, const PointCloud& cloud,
