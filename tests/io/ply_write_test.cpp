@@ -185,6 +185,26 @@ TEST(PlyWrite, NamesColumnsInASingleWord) {
   }
 }
 
+TEST(PlyWrite, TellsManyColumnsOfOneNameApart) {
+  const Scratch scratch;
+  PointCloud cloud;
+  cloud.positions = {{1, 2, 3}};
+  constexpr std::int16_t kMany = 2000;  // takes half a minute if each tries the names of all others
+  for (std::int16_t i = 0; i < kMany; ++i) {
+    cloud.attributes.push_back(make_attribute("a", std::vector<std::int16_t>{i}));
+  }
+  formats::write_cloud(scratch.path("a.ply"), cloud);
+  const std::string bytes = bytes_of(scratch.path("a.ply"));
+  EXPECT_TRUE(contains(bytes,
+                       "property short a\nproperty short %61\nproperty short %61_\n"
+                       "property short %61%5F\nproperty short %61%5F_\n"));
+  const PointCloud back = formats::read_cloud(scratch.path("a.ply")).cloud;
+  ASSERT_EQ(back.attributes.size(), cloud.attributes.size());
+  for (std::int16_t i = 0; i < kMany; ++i) {
+    EXPECT_EQ(back.attributes[static_cast<std::size_t>(i)].value(0), i);
+  }
+}
+
 TEST(PlyWrite, GivesNormalsBackInTheirTypeAndLength) {
   const Scratch scratch;
   for (const std::string type : {"float", "double"}) {

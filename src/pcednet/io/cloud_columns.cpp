@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "pcednet/core/bytes.h"
@@ -118,6 +119,7 @@ void add_attribute(std::vector<ColumnView>& columns, const Attribute& attribute,
 /// the end.
 void make_names_unique(std::vector<ColumnView>& columns, bool has_label, bool has_counts) {
   std::set<std::string> taken = {"rgb", "rgba"};  // what write_pcd adds, what readers take apart
+  std::map<std::string, std::string> latest_of;   // by the name that it hides
   if (has_label) taken.insert(columns.back().name);
   const std::size_t count = columns.size() - (has_label ? 1 : 0);
   for (std::size_t c = 0; c < count; ++c) {
@@ -125,7 +127,10 @@ void make_names_unique(std::vector<ColumnView>& columns, bool has_label, bool ha
       columns[c].name = columns[c - 1].name;
       continue;
     }
-    while (!taken.insert(columns[c].name).second) columns[c].name = hidden(columns[c].name);
+    // All names between the first of its kind and the latest are taken.
+    std::string& latest = latest_of.try_emplace(columns[c].name, columns[c].name).first->second;
+    while (!taken.insert(latest).second) latest = hidden(latest);
+    columns[c].name = latest;
   }
 }
 
