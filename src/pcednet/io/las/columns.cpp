@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "pcednet/core/bytes.h"
 #include "pcednet/core/error.h"
@@ -251,7 +252,7 @@ class LayoutBuilder {
     LasField field{name, type, file_.record_length()};
     const std::size_t length = file_.record_length() + size_of(type);
     if (length > UINT16_MAX) too_many();
-    describe_undocumented();
+    if (!std::exchange(all_described_, true)) describe_undocumented();
     put_number(file_.header, las_header::kRecordLength, static_cast<std::uint16_t>(length));
     descriptors_ += las_extra_descriptor(field);
     return field;
@@ -299,7 +300,7 @@ class LayoutBuilder {
   std::set<std::string> taken_;
   std::set<const Attribute*> used_;
   bool keep_stored_;  ///< the normals of the file, rather than unit ones
-  bool has_normals_ = false, has_label_ = false;
+  bool has_normals_ = false, has_label_ = false, all_described_ = false;
 };
 
 }  // namespace
