@@ -5,8 +5,8 @@
 #include <string_view>
 
 /// The reader and the writer of JSON, compiled once for all rooms; in sources alone, so that no
-/// installed header asks for the library. Members are sorted by name in `Json` and keep their order
-/// in `OrderedJson`, and is meant for writing: it looks members up in linear time.
+/// installed header asks for the library. `Json` sorts members by name; `OrderedJson` keeps their
+/// order, and is meant for writing: it looks members up in linear time.
 namespace pcednet {
 
 using Json = nlohmann::json;
@@ -16,7 +16,7 @@ using OrderedJson = nlohmann::ordered_json;
 Json parse_json(std::string_view text);
 OrderedJson parse_ordered_json(std::string_view text);
 
-/// What becomes of bytes that are not UTF-8, as names of files may hold.
+/// The treatment of bytes that are not UTF-8, which names of files may hold.
 enum class NotUtf8 {
   kRefuse,   ///< throws Json::type_error
   kReplace,  ///< each becomes U+FFFD

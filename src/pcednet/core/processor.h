@@ -11,7 +11,7 @@ enum class InstructionSet {
   kAvx512,    ///< x86-64-v4
 };
 
-/// Those that this processor has, the baseline first.
+/// The instruction sets of this processor, the baseline first.
 std::span<const InstructionSet> usable_instruction_sets();
 
 /// The widest instruction set of this processor.

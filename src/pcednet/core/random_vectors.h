@@ -17,7 +17,7 @@ inline Vec3 uniform_vector(Random& random, const Vec3& low = Vec3::Zero(),
   return {x, y, z};
 }
 
-/// Of normal numbers.
+/// Three independent normal numbers.
 inline Vec3 normal_vector(Random& random) {
   const double z = random.normal();
   const double y = random.normal();

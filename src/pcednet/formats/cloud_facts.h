@@ -91,10 +91,10 @@ CloudFacts facts_of_header(const io::InputFile& file);
 /// Adds the counts of a finished part; the first part also gives what all have in common.
 void add_part(const PointCloud& part, CloudFacts& facts);
 
-/// That float32 coordinates within `bounds` are rounded to more than the points are apart; empty if
-/// they are not. `apart` is the distance of neighbouring places. Rounding along all axes leaves
-/// places that are further apart than its steps: there the share of the points at places of their
-/// own, `distinct`, gives the distance of the points.
+/// A note that float32 coordinates within `bounds` are rounded to more than the points are apart;
+/// empty if they are not. `apart` is the distance of neighbouring places. Rounding along all axes
+/// leaves places that are further apart than its steps: there the share of the points at places of
+/// their own, `distinct`, gives the distance of the points.
 std::string note_on_float(const BoundingBox& bounds, double apart, double distinct = 1.0);
 
 /// The possible surprises in otherwise complete facts.

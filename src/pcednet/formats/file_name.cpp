@@ -8,7 +8,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of every name with bytes that were replaced: U+FFFD.
+/// U+FFFD, which stands for bytes that were replaced.
 constexpr const char* kReplaced = "\xEF\xBF\xBD";
 
 bool is_replaced(const fs::path& name) {

@@ -6,8 +6,8 @@
 
 namespace pcednet::formats {
 
-/// Reads a point file: PLY, PCD, LAS, LAZ or E57, told by the first bytes; otherwise OBJ (.obj),
-/// OFF (.off), STL (.stl) or text (.xyz, .txt, .asc, .pts, .csv) by its extension.
+/// Reads a point file: PLY, PCD, LAS, LAZ or E57 by its first bytes; otherwise PTX (.ptx), OBJ
+/// (.obj), OFF (.off), STL (.stl) or text (.xyz, .txt, .asc, .pts, .csv) by its extension.
 ///
 /// Normals are made unit, unusable ones (0,0,0), and left out if all are unusable; the warnings
 /// count these and positions that are not finite. A file without points gives an empty cloud.

@@ -56,7 +56,7 @@ bool is_one_of(std::string_view word, std::initializer_list<std::string_view> wo
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Of the systems that a definition may describe, in both versions.
+/// The keywords of systems that a definition may describe, in both versions.
 constexpr std::array<std::string_view, 15> kSystemKeywords = {
     "projcs",        "projcrs",  "projectedcrs", "geogcs",         "geogcrs",
     "geographiccrs", "geodcrs",  "geodeticcrs",  "geoccs",         "compd_cs",

@@ -33,7 +33,7 @@ std::string code_text(const CoordinateSystem& system);
 /// unit and no code but that of the heights.
 CoordinateSystem coordinate_system_of_wkt(std::string_view wkt);
 
-/// Whether units of so many metres differ by more than a thousandth; 0 is an unknown one.
+/// Whether units of `a` and `b` metres differ by more than a thousandth; 0 is an unknown one.
 bool is_stretched(double a, double b);
 
 /// The part of a definition that describes the heights, without blanks and in capitals; empty if

@@ -13,7 +13,7 @@
 namespace pcednet::io {
 namespace {
 
-/// Of what is not a regular file.
+/// The reason not to read a file of that mode, which is not a regular one.
 const char* why_unreadable(mode_t mode) {
   if (S_ISDIR(mode)) return "is a folder";
   if (S_ISFIFO(mode)) return "is a pipe, and is read at several places: save it as a file";

@@ -29,7 +29,7 @@ class InputFile {
   /// before.
   void read(std::uint64_t offset, std::span<std::byte> bytes) const;
 
-  /// At most `count` bytes from `offset` on, as many as there are.
+  /// The bytes from `offset` on, at most `count`.
   std::string text(std::uint64_t offset = 0, std::uint64_t count = UINT64_MAX) const;
 
  private:

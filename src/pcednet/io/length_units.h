@@ -22,7 +22,7 @@ std::span<const LengthUnitEntry> length_units();
 
 const LengthUnitEntry& entry_of(LengthUnit unit);
 
-/// The unit of so many metres, as a definition rounds them; kNone if the table has none.
+/// The unit of that length, as a definition rounds it; kNone if the table has none.
 LengthUnit unit_of_metres(double metres);
 
 /// The unit with that EPSG code; kNone if the table has none.

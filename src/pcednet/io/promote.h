@@ -28,7 +28,7 @@ const Attribute* find_called(const PointCloud& cloud, const std::string& name);
 /// if it is -1 or NaN, otherwise none.
 std::optional<std::uint8_t> to_label(double value);
 
-/// Those of an attribute of one number a point; none if a number denotes no label.
+/// The labels of an attribute of one number a point; none if a number denotes no label.
 std::optional<std::vector<std::uint8_t>> to_labels(const Attribute& attribute, std::size_t points);
 
 /// Makes the attribute with a label name the labels of `cloud`, if all its values denote labels.

@@ -15,7 +15,7 @@ void add_scanner(const Vec3& position, PointCloud& cloud);
 /// The positions in such comments. Unnamed ones are NaN.
 std::vector<Vec3> scanners_of_comments(const std::vector<std::string>& comments);
 
-/// Whether the scanners stood at the same places; unknown ones are alike.
+/// Whether the scanners stood at the same places; two unknown places count as the same.
 bool are_same(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
 
 /// Gives the cloud these scanners, and their comments in place of others.

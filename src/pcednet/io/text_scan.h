@@ -55,7 +55,7 @@ class Separators {
 };
 inline constexpr Separators kBlankSeparators{kBlanks};
 
-/// Those between the numbers of a text, except for decimal commas.
+/// The separators between the numbers of a text, except for decimal commas.
 inline constexpr Separators kNumberSeparators{" \t\r\v\f,;"};
 
 /// Whether a line of a text of points or labels begins with # or //.

@@ -18,7 +18,7 @@ struct Opening {
   double width;   ///< in (0, 2 pi]
 };
 
-/// That of the directions `angles`, one or more from std::atan2; sorts them.
+/// The widest opening between the directions `angles`, one or more from std::atan2; sorts them.
 inline Opening widest_opening(std::span<double> angles) {
   std::sort(angles.begin(), angles.end());
   Opening best{angles.back() + std::numbers::pi, 0.0};

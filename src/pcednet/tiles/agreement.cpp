@@ -88,7 +88,7 @@ std::string some_of(const std::vector<std::string>& names) {
   return names.front() + (names.size() == 1 ? "" : fmt::format(" and {} more", names.size() - 1));
 }
 
-/// What the inputs so far say, and which says it.
+/// The statements of the inputs so far, and which input made each.
 struct Said {
   std::vector<std::size_t> forms = {};              ///< see Plan
   std::map<std::string, std::size_t> columns = {};  ///< how many inputs have each

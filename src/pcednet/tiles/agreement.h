@@ -16,7 +16,7 @@ namespace pcednet::tiles {
 /// the tiles cannot keep: faces, records of LAS that the first input lacks.
 void check_agreement(std::vector<IndexedInput>& inputs, Plan& plan);
 
-/// The plan's scanners: the one at `viewpoint`, otherwise those that all inputs tell alike, or
+/// The plan's scanners: the one at `viewpoint`, otherwise those of all inputs if these agree, or
 /// those of input after input, which get their places in the list. Throws Error(kUsage) where
 /// `viewpoint` is given and an input is of several scans.
 void choose_scanners(std::vector<IndexedInput>& inputs, const std::optional<Vec3>& viewpoint,

@@ -82,14 +82,14 @@ std::vector<std::vector<std::uint32_t>> batches_of(std::span<const Vec3> positio
   return batches;
 }
 
-/// Those of the first batch.
+/// The points of the first batch.
 PointCloud first_batch(const PointCloud& dense) {
   PointCloud points;
   append_surface(dense, batches_of(dense.positions).front(), points);
   return points;
 }
 
-/// How notes begin that are of so many points.
+/// The beginning of notes on a sample of that many points; empty if they are all.
 std::string whose_notes(std::size_t points, bool are_all) {
   return are_all ? "" : fmt::format("in a sample of {} points: ", points);
 }

@@ -28,7 +28,7 @@ ExtraMeaning meaning_of(const io::LasField& field, std::string_view descriptor) 
   return meaning;
 }
 
-/// What the records say on the coordinate system, verbatim.
+/// The records on the coordinate system, verbatim.
 std::map<std::uint16_t, std::string> system_records(const io::LasFile& file) {
   std::map<std::uint16_t, std::string> found;
   for (const io::LasRecord* record : io::all_records(file)) {

@@ -9,10 +9,10 @@
 #include "pcednet/cloud/point_cloud.h"
 #include "pcednet/io/las/file.h"
 
-/// What decides whether the points of two LAS files can stand in one.
+/// The facts that decide whether the points of two LAS files can stand in one.
 namespace pcednet::tiles {
 
-/// What decides the values that the numbers of an extra field stand for (LASF_Spec 4).
+/// The meaning of the numbers of an extra field (LASF_Spec 4).
 struct ExtraMeaning {
   std::uint8_t type = 0;
   std::size_t components = 1;
@@ -22,7 +22,7 @@ struct ExtraMeaning {
   bool operator==(const ExtraMeaning&) const = default;
 };
 
-/// That of each extra field that is described.
+/// The meaning of each extra field that is described.
 std::map<std::string, ExtraMeaning> extra_meanings(const io::LasFile& file);
 
 /// How much a file names of a coordinate system: 0 nothing, 1 x and y, 2 heights, too.
@@ -41,7 +41,7 @@ struct TimeBase {
 };
 TimeBase time_base(const io::LasFile& file);
 
-/// Whether records describe or hold some.
+/// Whether records describe or hold waveforms.
 bool has_waveforms(const io::LasFile& file);
 
 }  // namespace pcednet::tiles

@@ -302,7 +302,7 @@ std::size_t points_for_experts(const PointCloud& whole, std::size_t places, bool
   return detect::traits_for(model, prepared).points;
 }
 
-/// Of coordinates of this type; the sample holds all points of the places that it has.
+/// Notes coordinates of a type that rounds them too much. The sample has all points of its places.
 void note_float_rounding(const detect::EdgeModel& model, ScalarType type,
                          const PreparedSample& sample, Plan& plan) {
   if (!detect::may_be_too_coarse(type, plan.normals, model.descriptor.range)) return;

@@ -58,8 +58,8 @@ void add_core(const PointCloud& core, PointCloud& all) {
   detect::set_estimated_normals(all, detect::declares_estimated_normals(core));
 }
 
-/// Of `prepared`, all points that decide in the core, whose points come first unless others stand
-/// for them.
+/// All points of `prepared` that decide in the core. The core's own come first, unless averages
+/// stand for them.
 detect::PartOfCloud part_of(const Plan& plan, std::size_t tile, std::size_t core,
                             const PointCloud& all, const detect::PreparedCloud& prepared) {
   detect::PartOfCloud part{.pyramids = plan.pyramids, .points = plan.places, .wanted = {}};

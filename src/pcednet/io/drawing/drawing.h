@@ -41,7 +41,8 @@ struct DrawingOptions {
   double fit_tolerance = 0.0;  ///< how far points may be from the curves; 0: unknown
   DxfVersion dxf_version = DxfVersion::k2000;
   DxfArcs dxf_arcs = DxfArcs::kAll;
-  /// Of the coordinates. DXF: absent, that of the coordinate system; SVG: gives the size on a page.
+  /// The unit of the coordinates. DXF takes that of the coordinate system where it is absent; SVG
+  /// has a size on the page only with it.
   std::optional<LengthUnit> unit = std::nullopt;
   View view = View::kTop;
   CoordinateSystem coordinate_system = {};
@@ -78,8 +79,8 @@ void write_drawing(const std::filesystem::path& path, std::span<const lines::Cur
 /// How many arcs and circles are not horizontal within the tolerance of polylines.
 std::size_t count_tilted(std::span<const lines::Curve> curves, const DrawingOptions& options);
 
-/// What readers of the file will not learn of the drawing, as phrases: GeoJSON without an EPSG code
-/// does not tell that its coordinates are no degrees. Throws Error(kUsage) as drawing_format_for().
+/// The facts that the file does not hold, as phrases: GeoJSON without an EPSG code does not tell
+/// that its coordinates are no degrees. Throws Error(kUsage) as drawing_format_for().
 std::vector<std::string> drawing_losses(const std::filesystem::path& path,
                                         const DrawingOptions& options);
 

@@ -229,7 +229,7 @@ class LayoutBuilder {
     }
   }
 
-  /// Those that no field has taken.
+  /// The attributes that no field has taken.
   std::vector<const Attribute*> attributes_left() const {
     const bool has_result = find_attribute(cloud_, "scalar_p_sharp") != nullptr;
     std::vector<const Attribute*> left;

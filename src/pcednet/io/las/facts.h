@@ -68,7 +68,7 @@ void count_points(const PointCloud& points, LasFacts& facts);
 /// The points that are marked as deleted, by the field Withheld of a cloud of any format.
 std::size_t count_withheld(const PointCloud& points);
 
-/// For the user, where so many of `points` are labelled; empty if none is withheld.
+/// A note for the user that `withheld` of `points` points are withheld; empty if none is.
 std::string note_on_withheld(std::size_t withheld, std::size_t points);
 
 }  // namespace pcednet::io

@@ -52,7 +52,7 @@ void check_las_positions(const std::filesystem::path& path, const PointCloud& cl
 /// the one that PROJ knows. Of any other cloud, that of its comments, as E57 has.
 CoordinateSystem las_coordinate_system(const PointCloud& cloud);
 
-/// What a format loses that keeps neither header nor records of LAS, as phrases: the coordinate
+/// The losses, as phrases, of a format that keeps neither header nor records of LAS: the coordinate
 /// system, by its EPSG code if it has one, and the others. None if the cloud has no such elements.
 std::vector<std::string> las_element_losses(const PointCloud& cloud);
 

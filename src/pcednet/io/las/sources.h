@@ -29,7 +29,7 @@ LasSources find_las_sources(const LasFile& file, bool is_new, const PartOutline&
 const Attribute* las_source(const PointCloud& cloud, const LasSources& sources,
                             const std::string& field, ScalarType type);
 
-/// Those for Red, Green and Blue; all null unless all are there.
+/// The attributes for Red, Green and Blue; all null unless all are there.
 std::array<const Attribute*, 3> las_channels(const PointCloud& cloud, const LasSources& sources);
 
 /// Whether there are attributes that las_channels() may be, if all their values fit.

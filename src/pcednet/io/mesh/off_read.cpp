@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kMostVertices = 0x7fffffff;  // PLY numbers vertices with an int
 
-/// What the keyword announces for every vertex behind x y z.
+/// The numbers that the keyword announces for every vertex behind x y z.
 struct VertexLayout {
   bool normals = false, colours = false, texture = false;
 

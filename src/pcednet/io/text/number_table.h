@@ -11,7 +11,7 @@ namespace pcednet::io {
 /// The numbers of a text, row by row, in blocks: it grows without a copy.
 class NumberTable {
  public:
-  /// Of rows of so many numbers.
+  /// `columns`: numbers in a row.
   explicit NumberTable(std::size_t columns = 0)
       : columns_(columns),
         block_rows_(std::max<std::size_t>(1, kBlockNumbers / std::max<std::size_t>(1, columns))) {}

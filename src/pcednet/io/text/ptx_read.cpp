@@ -33,7 +33,7 @@ struct PtxScan {
   }
 };
 
-/// What a line of a point may hold; those of other scans may hold more.
+/// The most numbers in the line of a point; those of some scans hold fewer.
 constexpr std::size_t kWidth = 7;  // x y z intensity red green blue
 constexpr std::size_t kIntensity = 3, kColour = 4;
 

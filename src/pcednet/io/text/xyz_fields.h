@@ -31,8 +31,8 @@ std::vector<std::string> split_names(std::string_view line);
 /// Whether there are columns for positions, in any case: x, y and z, or the names that surveyors
 /// use in place of these, which then become x, y and z.
 ///
-/// Those are easting or rechtswert; northing or hochwert; and z, elevation, altitude, height, höhe
-/// or hoehe, in this order where there are several. E, n and h count if none of the others is
+/// The names are easting or rechtswert; northing or hochwert; and z, elevation, altitude, height,
+/// höhe or hoehe, in this order where there are several. E, n and h count if none of the others is
 /// there. Beside an x or a y they are columns like any other. A unit of length in brackets may
 /// follow: x [m].
 bool name_positions(std::vector<std::string>& names);
@@ -46,8 +46,8 @@ class TableFacts {
   void add(std::span<const double> row);
 
   std::size_t columns() const { return columns_.size(); }
-  /// Of a column: whether no number is above 1; whether there are rows, and all hold whole numbers
-  /// in 0 ... 255; those or other labels, see to_label(); 0, 1, 2 and 255 alone.
+  /// Facts on a column: whether no number is above 1; whether there are rows, and all hold whole
+  /// numbers in 0 ... 255; those or other labels, see to_label(); 0, 1, 2 and 255 alone.
   bool are_up_to_one(std::size_t column) const { return columns_[column].are_up_to_one; }
   bool are_bytes(std::size_t column) const { return rows_ > 0 && columns_[column].are_bytes; }
   bool are_labels(std::size_t column) const { return rows_ > 0 && columns_[column].are_labels; }

@@ -43,7 +43,7 @@ class TableReader {
   /// The columns, once all rows were read; of these are `facts`, which only guesses of names need.
   std::vector<Column> columns(const TableFacts& facts);
   const std::vector<std::string>& comments() const { return comments_; }
-  /// Those to the user, once columns() was called.
+  /// The warnings to the user, once columns() was called.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
