@@ -148,6 +148,22 @@ TEST(Xyz, LeavesTheNamesOfSurveyorsBesideXAndY) {
   const auto prose = scratch.read("a.xyz", "# easting northing height of a scan\n1 2 3\n").cloud;
   EXPECT_EQ(prose.comments, std::vector<std::string>{"easting northing height of a scan"});
   EXPECT_EQ(prose.positions.at(0), Vec3(1, 2, 3));
+  const std::vector<std::string> unit = {"x y z in metres", "by hand"};
+  for (const char* names : {"# x y z time depth\n", "x y z time depth\n", "x,y,z,time,depth\n"}) {
+    const auto named =
+        scratch.read("a.txt", std::string("# x y z in metres\n# by hand\n") + names + "1 2 3 4 5\n")
+            .cloud;
+    EXPECT_EQ(named.comments, unit) << names;
+    ASSERT_EQ(named.attributes.size(), 2u);
+    EXPECT_EQ(named.attributes[0].name, "time");
+    EXPECT_EQ(named.attributes[1].name, "depth");
+  }
+  const auto above =
+      scratch.read("a.txt", "# x y z time\n# x y z of it in metres\n1 2 3 4\n").cloud;
+  EXPECT_EQ(above.attributes.at(0).name, "time");
+  EXPECT_EQ(above.comments, std::vector<std::string>{"x y z of it in metres"});
+  const auto tabs = scratch.read("a.txt", "#x\ty\tz\ttime\n1\t2\t3\t\n1\t2\t3\t4\n").cloud;
+  EXPECT_EQ(tabs.attributes.at(0).name, "time");
 }
 
 TEST(Xyz, ReadsQuotedNumbersUnderQuotedNames) {

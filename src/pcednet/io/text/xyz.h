@@ -17,11 +17,11 @@ namespace pcednet::io {
 /// commas; or with decimal commas, if a line proves it: see commas_of().
 ///
 /// Lines that begin with # or // are comments; a line of names, commented or not, with x, y and z
-/// among them names the columns, which CloudBuilder then reads as of type double. Without names,
-/// columns after the third are taken for normals, colours or labels by their values, with a
-/// warning. A first line with one whole number is the count of points; as many points later another
-/// count may follow, that of the next scan. Throws Error(kUnreadable) naming the line that does not
-/// fit the others.
+/// among them names the columns, which CloudBuilder then reads as of type double: of such comments
+/// the last with as many names as there are columns. Without names, columns after the third are
+/// taken for normals, colours or labels by their values, with a warning. A first line with one
+/// whole number is the count of points; as many points later another count may follow, that of the
+/// next scan. Throws Error(kUnreadable) naming the line that does not fit the others.
 LoadedCloud read_xyz(const InputFile& file);
 
 /// The same in parts of `most` points. It reads the whole file once, to find the parts and the

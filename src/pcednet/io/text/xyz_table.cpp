@@ -72,37 +72,58 @@ void TableReader::take_line(std::string_view line) {
 
 void TableReader::take_comment(std::string_view comment) {
   std::vector<std::string> names = split_names(comment);
-  if (table_.columns() == 0 && names_.empty() && name_positions(names)) {
-    names_ = std::move(names);
-    naming_comment_ = comment;
+  const bool may_name = table_.columns() == 0 && names_.empty() && name_positions(names);
+  if (may_name) {
+    naming_comments_.push_back(comments_.size());
     note_names(comment);
-  } else {
-    comments_.emplace_back(comment);
   }
+  comments_.emplace_back(comment);
+}
+
+/// Whether the line names the columns, which it then does.
+bool TableReader::take_names(std::string_view line) {
+  std::vector<std::string> names = split_names(line);
+  if (!name_positions(names)) return false;
+  names_ = std::move(names);
+  note_names(line);
+  return true;
+}
+
+/// Splits the first row. Of the comments that may name columns, the last with as many names as the
+/// row has words does; the others are prose that happens to hold x, y and z.
+void TableReader::split_first_row(std::string_view line) {
+  const bool by_comment = names_.empty();
+  for (; by_comment && !naming_comments_.empty(); naming_comments_.pop_back()) {
+    const auto comment = comments_.begin() + static_cast<std::ptrdiff_t>(naming_comments_.back());
+    take_names(*comment);
+    split_row(line);
+    if (names_.size() != words_.size()) continue;
+    comments_.erase(comment);
+    return;
+  }
+  if (by_comment) names_.clear(), separator_ = 0;
+  split_row(line);
 }
 
 /// A line before the first point: a count, names, or the first point.
 void TableReader::take_first(std::string_view line) {
   split(line, words_, kNumberSeparators);
   if (take_count()) return;
-  if (names_.empty() && (words_.empty() || !parse_double(words_[0]))) {
-    names_ = split_names(line);
-    note_names(line);
+  const bool begins_with_text = names_.empty() && (words_.empty() || !parse_double(words_[0]));
+  if (begins_with_text && take_names(line)) {
     quoted_ = line.find('"') != std::string_view::npos;
-    if (name_positions(names_)) return;
+    return;
+  }
+  if (begins_with_text && naming_comments_.empty()) {
     throw error(
         "expected numbers, or names of columns with x, y and z (easting, northing and height) "
         "among them");
   }
   decide_on_commas(line);
-  split_row(line);
+  split_first_row(line);
   if (words_.size() - empty_words() < 3) throw error("expected at least three numbers");
   if (words_.size() > kMostColumns) {
     throw error(fmt::format("{} numbers: at most {} are read", words_.size(), kMostColumns));
-  }
-  if (!naming_comment_.empty() && names_.size() != words_.size()) {
-    comments_.push_back(naming_comment_);  // prose that happens to hold x, y and z
-    names_.clear();
   }
   // A separator at the end of a line begins no column, unless that has a name.
   const bool has_end = words_.back().empty() || names_.size() == words_.size() + 1;

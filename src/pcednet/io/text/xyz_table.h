@@ -51,6 +51,8 @@ class TableReader {
   void take_line(std::string_view line);
   void take_comment(std::string_view comment);
   void take_first(std::string_view line);
+  bool take_names(std::string_view line);
+  void split_first_row(std::string_view line);
   void note_names(std::string_view line);
   void mark_text();
   bool take_count();
@@ -69,8 +71,8 @@ class TableReader {
   FileLines lines_;
   std::size_t number_ = 0;
   std::vector<std::string> names_ = {};
-  std::string naming_comment_ = {};  ///< the comment that the names come from, if they do
-  char separator_ = 0;               ///< between the names; 0: blanks
+  std::vector<std::size_t> naming_comments_ = {};  ///< that may name the columns, by number
+  char separator_ = 0;                             ///< between the names; 0: blanks
   bool quoted_ = false;     ///< the line of names has quotes, so that numbers may have them
   std::string plain_ = {};  ///< the line at hand without them
   std::vector<std::string> comments_ = {}, warnings_ = {};
