@@ -206,7 +206,8 @@ TEST(Pcd, TakesColoursPackedInAFloat) {
 TEST(Pcd, GivesBackWhatItWasGiven) {
   const Scratch scratch;
   PointCloud cloud = sample_cloud(20000);
-  cloud.comments = {"made by a test", "VIEWPOINT 1 2 3 0 1 0 0", "WIDTH 200 HEIGHT 100"};
+  cloud.comments = {"made by a test", "VIEWPOINT of the scanner at the front door",
+                    "VIEWPOINT 1 2 3 0 1 0 0", "WIDTH 200 HEIGHT 100"};
   std::vector<std::byte> bytes(cloud.size() * 12);
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(i % 61);
   cloud.attributes.push_back({"fpfh", ScalarType::kInt32, 3, bytes});

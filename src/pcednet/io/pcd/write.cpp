@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "pcednet/io/cloud_columns.h"
 #include "pcednet/io/pcd/pcd.h"
 #include "pcednet/io/text_scan.h"
@@ -30,8 +32,11 @@ KeptHeader kept_header(const PointCloud& cloud) {
   std::vector<std::string_view> words;
   for (const auto line : split_lines(cloud.comments)) {
     split(line, words);
+    const bool is_viewpoint = words.size() == 8 && words[0] == "VIEWPOINT" &&
+                              std::all_of(words.begin() + 1, words.end(),
+                                          [](auto word) { return parse_double(word).has_value(); });
     const bool is_grid = words.size() == 4 && words[0] == "WIDTH" && words[2] == "HEIGHT";
-    if (words.size() == 8 && words[0] == "VIEWPOINT") {
+    if (is_viewpoint) {
       kept.viewpoint = line;
     } else if (is_grid) {
       const std::uint64_t width = parse_count(words[1]).value_or(0);
