@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "io/scratch.h"
-#include "pcednet/io/faces.h"
+#include "pcednet/io/ply/faces.h"
 
 namespace pcednet::io {
 namespace {
