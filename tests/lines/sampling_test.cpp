@@ -73,6 +73,20 @@ TEST(Sampling, ThinWallsEverywhereAreNoNoise) {
   EXPECT_EQ(noise_of_wall(0.2, 1.0), noise_of_wall(0.2, -1.0));
 }
 
+TEST(Sampling, TheSidesOfAWallAreNoLayersOfScans) {
+  for (const double thickness : {1.2, 2.0, 2.6, 3.2}) {
+    Random random(5);
+    Cloud cloud;
+    for (int i = 0; i < 6000; ++i) {
+      const bool above = i % 2 == 0;
+      const double x = 55.0 * random.uniform(), y = 55.0 * random.uniform();
+      cloud.add({x, y, above ? thickness : 0.0}, above ? Vec3(0, 0, 1) : Vec3(0, 0, -1), false);
+    }
+    const OrderedPoints points({cloud.positions, cloud.normals, cloud.classes});
+    EXPECT_LT(measure_sampling(points).noise, 1e-6) << thickness;
+  }
+}
+
 TEST(Sampling, TakesScansThatAreNotAlignedForNoise) {
   const auto noise_of_scans = [](double apart) {  // in spacings
     Random random(4);
