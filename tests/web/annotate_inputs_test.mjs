@@ -219,6 +219,7 @@ test("shows a prediction that comes while the page opens", () =>
     });
     await few.goto(address);
     await first;
+    await few.waitForFunction(() => annotator.client.events.readyState === EventSource.OPEN);
     headers["X-Window"] = (await ask("window", "{}")).window;
     await ask(`window/${headers["X-Window"]}/take`, "{}");
     await ask("settings", JSON.stringify({ start: "general" }));
