@@ -13,6 +13,7 @@
 #include "http_server.h"
 #include "models.h"
 #include "pcednet/core/error.h"
+#include "pcednet/io/text_scan.h"
 #include "web_pages.h"
 #include "workbench/annotate/page/api.h"
 #include "workbench/annotate/project/journal.h"
@@ -132,9 +133,7 @@ std::optional<ClassTable> classes_named(const std::string& given) {
   if (!fs::is_regular_file(given, ignored)) return parse_classes(given);
   std::ifstream file(given);
   const std::string text(std::istreambuf_iterator<char>(file), {});
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // as Windows writes it
-  return parse_classes(text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size())
-                                                        : text);
+  return parse_classes(io::without_mark(text));
 }
 
 annotate::SessionOptions session_options(const AnnotateArguments& arguments, const Common& common,
