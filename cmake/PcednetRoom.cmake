@@ -4,9 +4,10 @@
 # Makes the library target pcednet_NAME (alias pcednet::NAME, workbench::NAME) from every source of
 # the current folder; a room within another is named io/las, its target pcednet_io_las. USES names
 # the rooms whose headers it includes; LINKS are outside libraries that appear in its headers,
-# PRIVATE_LINKS those that appear only in its sources. A QUICK room takes little of the time of any
-# run, and is compiled for a quick build. Rooms of the library are installed, as part of
-# the package's component PCEDNET_COMPONENT; those of the workbench are not.
+# PRIVATE_LINKS those that appear only in its sources, other than fmt, which writes every room's
+# messages. A QUICK room takes little of the time of any run, and is compiled for a quick build.
+# Rooms of the library are installed, as part of the package's component PCEDNET_COMPONENT; those
+# of the workbench are not.
 function(pcednet_room name)
   pcednet_make_room(${name} pcednet ${ARGN})
   string(REPLACE "/" "_" flat ${name})
@@ -44,7 +45,7 @@ function(pcednet_make_room name wing)
   endforeach()
   # Who uses the installed room need not have what is only headers of its sources.
   list(TRANSFORM room_PRIVATE_LINKS REPLACE "^(nlohmann_json|nanoflann)::.*$" "$<BUILD_INTERFACE:\\0>")
-  target_link_libraries(${target} PUBLIC ${room_LINKS} PRIVATE ${room_PRIVATE_LINKS})
+  target_link_libraries(${target} PUBLIC ${room_LINKS} PRIVATE fmt::fmt ${room_PRIVATE_LINKS})
   target_link_libraries(pcednet_rooms INTERFACE ${target})
   add_dependencies(rooms ${target})
 endfunction()
