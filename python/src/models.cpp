@@ -5,9 +5,9 @@
 
 #include "arrays.h"
 #include "bindings.h"
-#include "named.h"
 #include "pcednet/cloud/bounding_box.h"
 #include "pcednet/core/error.h"
+#include "pcednet/core/named.h"
 #include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/points/rounding.h"
 #include "pcednet/formats/cloud_facts.h"

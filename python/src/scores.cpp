@@ -6,7 +6,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "job.h"
-#include "named.h"
+#include "pcednet/core/named.h"
 #include "pcednet/eval/line_scores.h"
 #include "pcednet/eval/report.h"
 #include "pcednet/io/drawing/read_curves.h"

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "pcednet/core/error.h"
+#include "pcednet/core/named.h"
 #include "workbench/annotate/page/json.h"
 #include "workbench/annotate/scene/not_found.h"
 
@@ -79,18 +80,6 @@ constexpr Names<Shown, 8> kShown = {{{"labels", Shown::kLabels},
                                      {"file_labels", Shown::kFileLabels},
                                      {"las_classes", Shown::kLasClasses},
                                      {"errors", Shown::kErrors}}};
-
-/// The value of that name; the error lists all.
-template <typename Value, std::size_t kCount>
-Value named(const Names<Value, kCount>& values, const char* what, std::string_view name) {
-  std::string known;
-  for (const auto& [its_name, value] : values) {
-    if (its_name == name) return value;
-    const bool is_last = its_name == values.back().first;
-    known += fmt::format("{}{}", known.empty() ? "" : is_last ? " or " : ", ", its_name);
-  }
-  throw Error(ErrorKind::kUsage, fmt::format("{}: {}", what, known));
-}
 
 /// A header that offers a file. The input's name, of which `name` is made, may hold any bytes.
 std::string attachment(std::string name) {
