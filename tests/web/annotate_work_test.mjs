@@ -5,21 +5,35 @@ import { test } from "node:test";
 
 import { load } from "./bundle.mjs";
 
-const { api, brush, commands, files, line_client, preferences, reviewer, store, uncertain_client, views, words, work } =
-  await load(
-    "api",
-    "brush",
-    "commands",
-    "files",
-    "line_client",
-    "preferences",
-    "reviewer",
-    "store",
-    "uncertain_client",
-    "views",
-    "words",
-    "work",
-  );
+const {
+  api,
+  brush,
+  commands,
+  files,
+  line_client,
+  modes,
+  preferences,
+  reviewer,
+  store,
+  uncertain_client,
+  views,
+  words,
+  work,
+} = await load(
+  "api",
+  "brush",
+  "commands",
+  "files",
+  "line_client",
+  "modes",
+  "preferences",
+  "reviewer",
+  "store",
+  "uncertain_client",
+  "views",
+  "words",
+  "work",
+);
 
 const turns = () => new Promise((done) => setTimeout(done, 5));
 
@@ -325,9 +339,9 @@ test("Escape cancels the stroke first, then the outline, then the training", () 
 test("colourings of a prediction are offered once there is one", () => {
   const session = { has_colours: false, file_labels: [], file_predicted: false, las_classes: [] };
   const now = { ...store.initialState, session };
-  assert.deepEqual(commands.modesOf({ now }), ["normals", "labels", "feature"]);
-  const modes = commands.modesOf({ now: { ...now, hasPrediction: true } });
-  assert.deepEqual(modes, ["normals", "labels", "prediction", "confidence", "p_sharp", "feature"]);
+  assert.deepEqual(modes.modesOf({ now }), ["normals", "labels", "feature"]);
+  const predicted = modes.modesOf({ now: { ...now, hasPrediction: true } });
+  assert.deepEqual(predicted, ["normals", "labels", "prediction", "confidence", "p_sharp", "feature"]);
 });
 
 test("colourings of the file are offered where it has such classes, errors where its labels are a truth", () => {
@@ -335,7 +349,7 @@ test("colourings of the file are offered where it has such classes, errors where
   const session = { has_colours: false, file_labels: [sharp], file_predicted: false, las_classes: [] };
   const offered = (more, state = {}) => {
     const now = { ...store.initialState, hasPrediction: true, session: { ...session, ...more }, ...state };
-    return commands.modesOf({ now }).filter((mode) => ["file", "las", "errors"].includes(mode));
+    return modes.modesOf({ now }).filter((mode) => ["file", "las", "errors"].includes(mode));
   };
   assert.deepEqual(offered({}), ["file", "errors"]);
   assert.deepEqual(offered({ las_classes: [sharp] }), ["file", "las", "errors"]);

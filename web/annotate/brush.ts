@@ -1,22 +1,12 @@
 // The brush: a ball about the surface point under the pointer.
 
+import { usableRadius } from "./brush_size";
 import { paintBall } from "./paint";
 import type { Picked } from "./chunk";
-import { boxDiagonal } from "./geometry";
 import type { Client } from "./client";
 import type { Stage } from "./stage";
 import { activeClip, type AppStore } from "./store";
-import { NO_CLASS, type BrushStroke, type Session } from "./types";
-
-type Known = Pick<Session, "spacing" | "bounds">;
-
-/** The radii of the smallest and the largest brush. */
-export const brushRange = ({ spacing, bounds }: Known): [number, number] => [spacing * 0.5, boxDiagonal(bounds) / 4];
-
-export function usableRadius(radius: number, session: Known): number {
-  const [low, high] = brushRange(session);
-  return Math.min(Math.max(radius, low), high);
-}
+import { NO_CLASS, type BrushStroke } from "./types";
 
 export class Brush {
   /** As it was when the stroke began: what is set meanwhile is for the next one. */

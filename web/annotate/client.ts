@@ -1,10 +1,10 @@
 // Keeps the page's state in step with the server's.
 
 import { ApiError, NO_ANSWER, type Api } from "./api";
-import { usableRadius } from "./brush";
+import { usableRadius } from "./brush_size";
 import { paintable, usableClass, type WantedClass } from "./classes";
 import { Files } from "./files";
-import { modesOf, PREDICTED } from "./commands";
+import { modesOf, PREDICTED } from "./modes";
 import { LineClient } from "./line_client";
 import { NOTHING_PAINTED, refusalOf } from "./refusal";
 import type { Stage } from "./stage";

@@ -1,15 +1,15 @@
 // Everything the page can do, each with a name and keys; the help is made of this list.
 
 import type { Brush } from "./brush";
-import { hasErrors } from "./file_classes";
 import { isOff, MOST_CLASSES, paintable, paletteOf } from "./classes";
 import type { Client } from "./client";
+import { modesOf } from "./modes";
 import type { Outline } from "./outline";
 import type { Pointer } from "./pointer";
 import type { Reviewer } from "./reviewer";
 import type { Stage } from "./stage";
 import { NO_CLASS } from "./types";
-import type { AppStore, ColourMode, Tool } from "./store";
+import type { AppStore, Tool } from "./store";
 
 export interface Command {
   /** As `Ctrl+Shift+Z`; the first is shown on buttons. */
@@ -39,35 +39,6 @@ export interface Hands {
   save(): void;
   screenshot(): void;
   help(): void;
-}
-
-export const MODES: { mode: ColourMode; name: string }[] = [
-  { mode: "rgb", name: "original colours" },
-  { mode: "normals", name: "normals" },
-  { mode: "file", name: "labels of the file" },
-  { mode: "las", name: "LAS classes" },
-  { mode: "labels", name: "painted labels" },
-  { mode: "prediction", name: "prediction" },
-  { mode: "errors", name: "errors of prediction" },
-  { mode: "confidence", name: "confidence" },
-  { mode: "p_sharp", name: "probability of a sharp edge" },
-  { mode: "feature", name: "feature" },
-];
-
-/** Those that show a prediction. */
-export const PREDICTED: ColourMode[] = ["prediction", "errors", "confidence", "p_sharp"];
-
-/** The modes that this cloud has. */
-export function modesOf({ now }: Pick<AppStore, "now">): ColourMode[] {
-  return MODES.map(({ mode }) => mode).filter(
-    (mode) =>
-      (mode !== "rgb" || now.session?.has_colours) &&
-      (mode !== "file" || (now.session?.file_labels ?? []).length > 0) &&
-      (mode !== "errors" || hasErrors(now)) &&
-      (mode !== "las" || (now.session?.las_classes ?? []).length > 0) &&
-      (mode !== "p_sharp" || now.edges) &&
-      (now.hasPrediction || !PREDICTED.includes(mode)),
-  );
 }
 
 export function toggled(set: ReadonlySet<number>, item: number): Set<number> {

@@ -26,7 +26,8 @@ import { keepPreferences } from "./preferences";
 import { Reviewer } from "./reviewer";
 import { Stage } from "./stage";
 import { activeClip, initialState, Store, type State } from "./store";
-import { ask, helpDialog, Notices } from "./words";
+import { helpDialog } from "./help";
+import { ask, Notices } from "./words";
 
 /** How near the view goes to an uncertain place. */
 const VISIT_SPACINGS = 100;

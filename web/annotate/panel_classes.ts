@@ -1,7 +1,8 @@
 // The classes: which one is painted, how many points have it, which are hidden; and the brush.
 
 import { h } from "../shared/dom";
-import { brushRange, type Brush } from "./brush";
+import type { Brush } from "./brush";
+import { brushRange } from "./brush_size";
 import { refusalOf } from "./refusal";
 import { isOff, paintable, paletteOf } from "./classes";
 import { toggled } from "./commands";

@@ -2,7 +2,7 @@
 
 import { h } from "../shared/dom";
 import { FEATURE_NAMES } from "./colouring";
-import { MODES, modesOf } from "./commands";
+import { MODES, modesOf } from "./modes";
 import type { Press } from "./chrome";
 import { sliceOf } from "./clip_handles";
 import { boxDiagonal } from "./geometry";
