@@ -173,6 +173,15 @@ TEST_F(VirtualCloud, NamesItsFilesToWhoReadsIt) {
   EXPECT_EQ(listed({{"points", {{"href", "file://" + b.string()}, {"roles", {"data"}}}},
                     {"overview", {{"href", "c.laz"}, {"roles", {"overview"}}}}}),
             found);
+  // Names encoded as in a URL; a file that has the very name comes first.
+  const std::vector<std::filesystem::path> spaced = {a.lexically_normal()};
+  EXPECT_EQ(listed({{"data", {{"href", "./tiles/a%20b.las"}}}}), spaced);
+  EXPECT_EQ(
+      listed({{"data", {{"href", "file://" + scratch.path("out/tiles/a%20b.las").string()}}}}),
+      spaced);
+  const auto literal = write_las(scratch, "out/tiles/a%20b.las", "").lexically_normal();
+  EXPECT_EQ(listed({{"data", {{"href", "./tiles/a%20b.las"}}}}),
+            std::vector<std::filesystem::path>{literal});
 }
 
 TEST_F(VirtualCloud, IsRefusedWhereItNamesNoFileThatIsThere) {

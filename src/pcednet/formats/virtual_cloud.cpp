@@ -11,6 +11,7 @@
 #include "pcednet/core/json.h"
 #include "pcednet/formats/file_name.h"
 #include "pcednet/formats/format.h"
+#include "pcednet/io/column_names.h"
 #include "pcednet/io/las/facts.h"
 #include "pcednet/io/las/offsets.h"
 #include "pcednet/io/projection.h"
@@ -190,10 +191,13 @@ fs::path file_behind(const std::string& reference, const fs::path& cloud) {
   if (!is_file && reference.find("://") != std::string::npos) {
     throw io::unreadable(cloud, reference + " is remote: only local files are read");
   }
-  const fs::path path =
-      cloud.parent_path() / (is_file ? reference.substr(kFile.size()) : reference);
+  const std::string name = is_file ? reference.substr(kFile.size()) : reference;
+  const fs::path path = cloud.parent_path() / name;
   std::error_code error;
   if (!fs::exists(path, error)) {
+    // Some programs write names as they are, others as in a URL.
+    const fs::path decoded = cloud.parent_path() / io::percent_decoded(name);
+    if (fs::exists(decoded, error)) return decoded.lexically_normal();
     throw io::unreadable(cloud, fmt::format("refers to {}, but {} does not exist", reference,
                                             path.lexically_normal().string()));
   }

@@ -56,18 +56,17 @@ Attribute joined(const Attribute& low, const Attribute& high) {
   return whole;
 }
 
-/// The name that column_name(), and hidden() after it, made `column` from.
-std::string attribute_name(std::string_view column) {
-  std::string name;
-  while (!column.empty()) {
-    const auto character = decoded(column);
-    name += character.value_or(column[0]);
-    column.remove_prefix(character ? 3 : 1);
-  }
-  return name;
-}
-
 }  // namespace
+
+std::string percent_decoded(std::string_view text) {
+  std::string plain;
+  while (!text.empty()) {
+    const auto character = decoded(text);
+    plain += character.value_or(text[0]);
+    text.remove_prefix(character ? 3 : 1);
+  }
+  return plain;
+}
 
 std::string column_name(std::string_view name) {
   const std::size_t underscore = special_underscore(name);
@@ -92,7 +91,7 @@ void restore_attributes(PointCloud& cloud) {
   for (std::size_t a = 0; a < given.size(); ++a) {
     const bool halves = a + 1 < given.size() && are_halves(given[a], given[a + 1]);
     restored.push_back(halves ? joined(given[a], given[a + 1]) : std::move(given[a]));
-    restored.back().name = attribute_name(restored.back().name);
+    restored.back().name = percent_decoded(restored.back().name);
     if (halves) ++a;
   }
   given = std::move(restored);

@@ -11,6 +11,10 @@ namespace pcednet::io {
 /// (blanks, commas, semicolons, quotes, control characters) are percent-encoded.
 std::string column_name(std::string_view name);
 
+/// `text` with the character that each "%XX" stands for: the name that column_name(), and hidden()
+/// after it, encoded.
+std::string percent_decoded(std::string_view text);
+
 /// Another column name for the same attribute, with one more character encoded, for use where
 /// `column` already has another meaning.
 std::string hidden(std::string column);
