@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "common.h"
 #include "number_options.h"
@@ -19,10 +20,15 @@
 namespace pcednet::app {
 namespace {
 
-/// The code of "EPSG:25832"; 0 if it is none.
-int code_of(std::string_view word) {
-  if (io::lower_case(word.substr(0, 5)) != "epsg:") return 0;
-  return io::epsg_code(word.substr(5));
+/// The codes of "EPSG:25832" or, with heights, "EPSG:25832+7837"; 0 and 0 if they are none.
+std::pair<int, int> codes_of(std::string_view word) {
+  if (io::lower_case(word.substr(0, 5)) != "epsg:") return {};
+  word.remove_prefix(5);
+  const std::size_t plus = word.find('+');
+  const int epsg = io::epsg_code(word.substr(0, plus));
+  if (plus == std::string_view::npos) return {epsg, 0};
+  const int heights = io::epsg_code(word.substr(plus + 1));
+  return epsg > 0 && heights > 0 ? std::pair(epsg, heights) : std::pair(0, 0);
 }
 
 /// Adds --crs, which sets `system` to that of a code of EPSG, as io::system_of_code() does.
@@ -31,14 +37,16 @@ CLI::Option* add_crs_option(CLI::App& command, std::optional<io::CoordinateSyste
       .add_option_function<std::string>(
           "--crs",
           [&system](const std::string& word) {
-            with_name_in_errors("--crs", [&] { system = io::system_of_code(code_of(word)); });
+            const auto [epsg, heights] = codes_of(word);
+            with_name_in_errors("--crs", [&] { system = io::system_of_code(epsg, heights); });
           },
-          "The coordinate system, such as EPSG:25832, where the file does not name it")
+          "The coordinate system, such as EPSG:25832 or, with that of the heights, "
+          "EPSG:25832+7837, where the file does not name it")
       ->check(CLI::Validator(
           [](const std::string& word) {
-            return code_of(word) > 0 ? "" : word + " is not a code such as EPSG:25832";
+            return codes_of(word).first > 0 ? "" : word + " is not a code such as EPSG:25832";
           },
-          "EPSG:CODE"));
+          "EPSG:CODE[+CODE]"));
 }
 
 }  // namespace

@@ -239,6 +239,9 @@ class Lines(LinesTest):
             srs, = database.execute("SELECT srs_id FROM gpkg_contents")
             database.close()
             self.assertEqual(srs, (25832,))
+        run("lines", path, *self.outputs(), "--crs", "EPSG:25832+7837", "--overwrite")
+        crs = json.loads(self.made["geojson"].read_text())["crs"]
+        self.assertEqual(crs["properties"]["name"], "urn:ogc:def:crs:EPSG::25832")
         # A build without PROJ takes any code in the range of codes, and does not know its unit.
         unknown = subprocess.run([PROGRAM, "lines", path, "-o", self.folder / "u.dxf", "--crs", "EPSG:30001"],
                                  capture_output=True, text=True)
@@ -247,7 +250,7 @@ class Lines(LinesTest):
             self.assertIn("PROJ knows no such system", unknown.stderr)
             self.assertIn("$INSUNITS\n 70\n6\n", self.made["dxf"].read_text())
         run("lines", path, "-o", self.folder / "a.obj", "--crs", "epsg:25832", expect=2)
-        for bad in ("25832", "EPSG:", "EPSG:0", "EPSG:-1", "EPSG:1e4", "EPSG:99999999999", ""):
+        for bad in ("25832", "EPSG:", "EPSG:0", "EPSG:-1", "EPSG:1e4", "EPSG:99999999999", "EPSG:25832+", "EPSG:25832+1+2", ""):
             done = run("lines", path, "-o", self.folder / "b.dxf", "--crs=" + bad, expect=2)
             self.assertIn("--crs", done.stderr)
         for code in (1, 1023, 32767, 999999):

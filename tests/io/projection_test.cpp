@@ -1,5 +1,6 @@
 #include "pcednet/io/projection.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "support/expect_error.h"
@@ -45,6 +46,22 @@ TEST(Projections, RefuseNumbersThatAreNoCodes) {
   }
   if (has_projections()) {
     EXPECT_ERROR(ErrorKind::kUsage, system_of_code(30001));
+  }
+}
+
+TEST(Projections, TakeTheCodeOfTheHeightsAlongside) {
+  const CoordinateSystem both = system_of_code(25832, 7837);
+  EXPECT_EQ(code_text(both), "EPSG:25832+7837");
+  EXPECT_EQ(both.wkt, definition_of({.epsg = 25832, .vertical_epsg = 7837}, WktVersion::k1));
+  EXPECT_EQ(both.unit, has_projections() ? LengthUnit::kMetre : LengthUnit::kNone);
+  EXPECT_ERROR(ErrorKind::kUsage, system_of_code(25832, 7));
+  if (!has_projections()) return;
+  EXPECT_EQ(system_of_code(25832, 8228).unit, LengthUnit::kNone);  // heights in feet
+  for (const auto& [epsg, heights] : {std::pair(25832, 4326), std::pair(7837, 25832)}) {
+    const auto error = test::error_of([&] { system_of_code(epsg, heights); });
+    ASSERT_TRUE(error) << epsg;
+    EXPECT_EQ(std::string(error->what()),
+              fmt::format("EPSG:{}+{}: PROJ knows no such system", epsg, heights));
   }
 }
 

@@ -214,15 +214,17 @@ std::optional<std::vector<std::array<double, 2>>> to_wgs84(const CoordinateSyste
 
 #endif
 
-CoordinateSystem system_of_code(int epsg) {
-  const auto refuse = [epsg](const std::string& why) {
-    throw Error(ErrorKind::kUsage, fmt::format("EPSG:{}: {}", epsg, why));
+CoordinateSystem system_of_code(int epsg, int heights) {
+  const auto refuse = [&](const std::string& why) {
+    const std::string more = heights == 0 ? "" : fmt::format("+{}", heights);
+    throw Error(ErrorKind::kUsage, fmt::format("EPSG:{}{}: {}", epsg, more, why));
   };
-  if (epsg < kLeastEpsgCode || epsg > kMostEpsgCode) {
+  const auto is_code = [](int code) { return code >= kLeastEpsgCode && code <= kMostEpsgCode; };
+  if (!is_code(epsg) || (heights != 0 && !is_code(heights))) {
     refuse(fmt::format("no code of a coordinate system, which are from {} to {}", kLeastEpsgCode,
                        kMostEpsgCode));
   }
-  CoordinateSystem system{.epsg = epsg};
+  CoordinateSystem system{.epsg = epsg, .vertical_epsg = heights};
   if (!has_projections()) return system;
   std::string wkt = definition_of(system, WktVersion::k1);
   if (wkt.empty()) wkt = definition_of(system, WktVersion::k2);
@@ -232,6 +234,7 @@ CoordinateSystem system_of_code(int epsg) {
     refuse("a system of heights alone, which has no x and y");
   }
   system.epsg = epsg;
+  system.vertical_epsg = heights;
   return system;
 }
 

@@ -25,11 +25,11 @@ std::string definition_of(const CoordinateSystem& system, WktVersion version);
 /// unless PROJ knows one that is surely the same.
 int code_of_definition(const std::string& wkt);
 
-/// The system of a code that a user gives, with its definition and unit as far as this build has
-/// PROJ. Throws Error(kUsage), which begins with the code, for a number that is no code of a
-/// system of x and y: out of kLeastEpsgCode to kMostEpsgCode or, with PROJ, unknown to it or a
-/// system of heights alone.
-CoordinateSystem system_of_code(int epsg);
+/// The system of a code that a user gives, with that of its heights unless it is 0, and with its
+/// definition and unit as far as this build has PROJ. Throws Error(kUsage), which begins with the
+/// codes, for numbers that are no codes of a system of x and y and one of heights: out of
+/// kLeastEpsgCode to kMostEpsgCode or, with PROJ, unknown to it or, as `epsg`, of heights alone.
+CoordinateSystem system_of_code(int epsg, int heights = 0);
 
 /// Points (x, y) of a system as (longitude, latitude) of WGS 84, in degrees. None if PROJ does not
 /// know the system, or one of them has no place there.
