@@ -33,6 +33,10 @@ void make_report(const ReportArguments& arguments, const Common& common) {
                 "report: this pcednet was built without the page; run scripts/build_web.sh and "
                 "build again");
   }
+  if (arguments.merge.lines && arguments.merge.clouds_per_set == 0) {
+    throw Error(ErrorKind::kUsage,
+                "--lines draws over clouds, of which --clouds-per-set 0 shows none");
+  }
   check_writable(arguments.output, common.overwrite());
   check_writable(arguments.json, common.overwrite());
   check_distinct({arguments.output, arguments.json});
