@@ -86,6 +86,14 @@ class Outputs(CliTest):
             self.assertIn("stopped by the user", self.end(running, 130))
             self.assertEqual(os.listdir(self.folder), ["a.ply"])
 
+    def test_a_set_without_curves_has_no_folder_for_them(self):
+        running = self.start("generate", "pieces", self.folder / "set")
+        while not list(self.folder.glob("set/*.ply")):
+            self.assertTrue(running.stderr.readline())
+        running.send_signal(signal.SIGINT)
+        self.end(running, 130)
+        self.assertFalse((self.folder / "set/curves").exists())
+
     def test_nohup_goes_on_when_the_terminal_closes(self):
         ignore = lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)
         self.assertEqual(self.stop(signal.SIGHUP, expect=0, preexec_fn=ignore),

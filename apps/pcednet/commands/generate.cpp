@@ -28,11 +28,6 @@ std::string shares_of(const PointCloud& cloud) {
                      percent_of(cloud, kNonEdge));
 }
 
-/// The file of a cloud's true curves: in a separate folder, which folder inputs leave out.
-std::filesystem::path curves_of(const std::filesystem::path& folder, const std::string& name) {
-  return folder / "curves" / (name + ".obj");
-}
-
 void write_curves(const std::filesystem::path& path, const std::vector<lines::Curve>& curves,
                   const Common& common) {
   constexpr double kTolerance = 2e-5;
@@ -41,14 +36,15 @@ void write_curves(const std::filesystem::path& path, const std::vector<lines::Cu
 
 void run(const std::string& folder, const std::vector<shapes::CloudRecipe>& recipes,
          const Common& common) {
-  const auto path_of = [&](const std::string& name) {
-    return std::filesystem::path(folder) / (name + ".ply");
-  };
+  // Folder inputs leave that of the curves out. It is made for the first of them.
+  const std::filesystem::path clouds(folder), curves_folder = clouds / "curves";
+  const auto cloud_of = [&](const auto& recipe) { return clouds / (recipe.name + ".ply"); };
+  const auto curves_of = [&](const auto& recipe) { return curves_folder / (recipe.name + ".obj"); };
   make_folder(folder);
-  for (const auto& recipe : recipes) check_writable(path_of(recipe.name), common.overwrite());
-  make_folder(std::filesystem::path(folder) / "curves");
+  const bool has_curves = std::filesystem::exists(curves_folder);
   for (const auto& recipe : recipes) {
-    check_writable(curves_of(folder, recipe.name), common.overwrite());
+    check_writable(cloud_of(recipe), common.overwrite());
+    if (has_curves) check_writable(curves_of(recipe), common.overwrite());
   }
   const Progress progress = console_progress(common);
   Stage stage(&progress, "generate", recipes.size());
@@ -56,8 +52,11 @@ void run(const std::string& folder, const std::vector<shapes::CloudRecipe>& reci
   std::size_t points = 0;
   for (const shapes::CloudRecipe& recipe : recipes) {
     const auto [name, cloud, curves] = recipe.make();
-    if (!curves.empty()) write_curves(curves_of(folder, recipe.name), curves, common);
-    formats::write_cloud(path_of(recipe.name), cloud, {.overwrite = common.overwrite()});
+    if (!curves.empty()) {
+      make_folder(curves_folder.string());
+      write_curves(curves_of(recipe), curves, common);
+    }
+    formats::write_cloud(cloud_of(recipe), cloud, {.overwrite = common.overwrite()});
     say(fmt::format("{:<16} {:>7}{}{}", recipe.name, cloud.size(), shares_of(cloud),
                     recipe.details));
     points += cloud.size();
