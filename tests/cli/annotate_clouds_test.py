@@ -133,6 +133,10 @@ class AnnotateClouds(AnnotateTest):
         for cloud, decision in ((0, "accepted"), (1, "rejected")):
             server.post("/api/lines/decide", {"cloud": cloud, "version": 1, "decision": decision,
                                               "lines": [0]})
+        for wrapped in ({"version": 2**32 + 1}, {"version": 1.5}, {"lines": [2**32]}, {"lines": [0.5]}, {"lines": 0}):
+            decided = {"cloud": 0, "version": 1, "decision": "rejected", "lines": [0], **wrapped}
+            self.assertIn(f"decide: {list(wrapped)[0]}", server.post("/api/lines/decide", decided, expect=400)["error"])
+        server.post("/api/settings", {"classes": 2**32 + 2}, expect=400)
         self.assertEqual(server.request("/api/download/lines?cloud=1")[0], 409)
         for arcs in ("", "?dxf_arcs=all", "?format=dxf&dxf_arcs=flat", "?dxf_arcs=none"):
             self.assertEqual(server.request("/api/download/lines" + arcs)[0], 200)

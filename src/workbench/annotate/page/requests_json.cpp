@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/json.h"
@@ -41,6 +42,25 @@ std::uint8_t edge_class(const Json& value) {
   need((c >= 0 && c < static_cast<std::int64_t>(kMostClasses)) || c == kUnlabelled,
        "a class is 0 to 7, or 255");
   return static_cast<std::uint8_t>(c);
+}
+
+/// Whole numbers as they are: Json::get() would cut off fractions, and higher bits.
+template <typename Whole>
+Whole whole(const Json& value, const char* what) {
+  const auto number = value.is_number_integer() ? value.get<std::int64_t>() : -1;
+  if (number < 0 || number > std::numeric_limits<Whole>::max()) {
+    throw Error(ErrorKind::kUsage, fmt::format("decide: {}", what));
+  }
+  return static_cast<Whole>(number);
+}
+
+std::vector<std::uint32_t> line_numbers(const Json& lines) {
+  std::vector<std::uint32_t> numbers;
+  if (!lines.is_array()) throw Error(ErrorKind::kUsage, "decide: lines: a list of numbers");
+  for (const Json& line : lines) {
+    numbers.push_back(whole<std::uint32_t>(line, "lines: a list of numbers from 0"));
+  }
+  return numbers;
 }
 
 std::size_t cloud_in(const Json& json) {
@@ -146,9 +166,9 @@ LinesSearch parse_lines_search(std::string_view text) {
 
 LinesDecided parse_decision(std::string_view text) {
   return parsed(text, "decide", [](const Json& json) -> LinesDecided {
-    return {.version = json.at("version").get<int>(),
+    return {.version = whole<int>(json.at("version"), "version: a number from 0"),
             .decision = decision_of(json.at("decision").get<std::string>()),
-            .lines = json.at("lines").get<std::vector<std::uint32_t>>(),
+            .lines = line_numbers(json.at("lines")),
             .cloud = cloud_in(json)};
   });
 }

@@ -32,7 +32,7 @@ Json json_of(const Settings& s) {
 SettingsChange settings_change_of(const Json& json) {
   SettingsChange change;
   if (const auto found = json.find("classes"); found != json.end()) {
-    change.classes = found->is_number_integer() ? found->get<int>() : 0;
+    change.classes = *found == 2 ? 2 : *found == 3 ? 3 : 0;
   }
   if (json.contains("auto")) change.automatic = json.at("auto").get<bool>();
   if (json.contains("start")) change.start = json.at("start").get<std::string>();
@@ -125,7 +125,8 @@ Json json_of(const ProjectClasses& classes) {
 
 ProjectClasses classes_in(const Json& list) {
   ProjectClasses classes{.table = {}};
-  if (!list.is_array() || list.size() > kMostClasses) check_classes(ClassTable(kMostClasses + 1));
+  if (!list.is_array()) throw Error(ErrorKind::kUsage, "classes: a list of classes is wanted");
+  if (list.size() > kMostClasses) check_classes(ClassTable(kMostClasses + 1));
   for (const Json& json : list) {
     const auto colour = colour_of(json.at("colour").get<std::string>());
     if (!colour) throw Error(ErrorKind::kUsage, "classes: a colour is #rrggbb");
