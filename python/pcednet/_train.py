@@ -108,7 +108,7 @@ def train(clouds, labels=None, *, normals=None, start=None, name="model", classe
     names = _core.class_names(table)
     arrays = [_labelled(k, *one, names, keep_orientation)
               for k, one in enumerate(zip(clouds, normals, labels))]
-    seed = _arrays.seed(seed)
+    name, seed = _arrays.text(name, "name"), _arrays.seed(seed)
     settings = {"descriptor": _descriptor(descriptor),
                 "classes": _arrays.whole(classes, "classes", 2, 3), "seed": seed,
                 "epochs": None if epochs is None else _arrays.whole(epochs, "epochs"),
@@ -119,10 +119,10 @@ def train(clouds, labels=None, *, normals=None, start=None, name="model", classe
         _check_has_smooth(arrays, names)
     with _arrays.reporting(progress) as report:
         if start is None:
-            core, history, notes = _core.train(arrays, table, str(name), bool(keep_orientation),
+            core, history, notes = _core.train(arrays, table, name, bool(keep_orientation),
                                                settings, report, _arrays.thread_count(threads))
         else:
-            core, history, notes = _core.adapt(start._core, arrays, table, str(name),
+            core, history, notes = _core.adapt(start._core, arrays, table, name,
                                                bool(keep_orientation), seed, report,
                                                _arrays.thread_count(threads))
     _arrays.warn(_classify.worded(notes))

@@ -212,7 +212,7 @@ class Training(CliTest):
             pcednet.train([], [])
         with self.assertRaisesRegex(TypeError, "unexpected keyword argument 'colour'"):
             pcednet.train(few, self.labels[:100], colour=1)
-        for named in ({"network": "mlp"}, {"recipe": "sgd"}, {"classes": 4}, {"epochs": -1}):
+        for named in ({"network": "mlp"}, {"recipe": "sgd"}, {"classes": 4}, {"epochs": -1}, {"name": None}):
             with self.assertRaises(pcednet.UsageError, msg=named):
                 pcednet.train(self.positions, self.labels, normals=self.normals, **named)
         with self.assertRaises(pcednet.InsufficientError):
