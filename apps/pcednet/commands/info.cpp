@@ -119,7 +119,8 @@ void list_files(const InfoRequest& request, const Common& common) {
   }
   std::uint64_t points = 0;
   for (const formats::VirtualFile& file : files) points += file.points;
-  say(fmt::format("{}: {} files, {} points", request.vpc, files.size(), points));
+  say(fmt::format("{}: {} file{}, {} points", request.vpc, files.size(),
+                  files.size() == 1 ? "" : "s", points));
 }
 
 formats::CloudFacts facts_of(const std::filesystem::path& path, bool all,

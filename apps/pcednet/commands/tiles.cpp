@@ -176,7 +176,8 @@ void join_into_file(const tiles::Plan& plan, const std::string& output, const Co
   const Progress progress = console_progress(common);
   const tiles::Joined joined = tiles::join(plan, output, common.overwrite(), &progress);
   warn_of_losses(output, joined.losses);
-  say(fmt::format("{}: {} points of {} tiles", output, joined.points, plan.tiles.size()));
+  say(fmt::format("{}: {} points of {} tile{}", output, joined.points, plan.tiles.size(),
+                  plan.tiles.size() == 1 ? "" : "s"));
 }
 
 /// Throws if the tiles are PLY, which a virtual point cloud cannot list.
@@ -196,7 +197,8 @@ void list_tiles(const tiles::Plan& plan, const std::string& vpc, const Common& c
   std::vector<formats::VirtualFile> files;
   for (const tiles::Tile& tile : plan.tiles) files.push_back(formats::virtual_file(tile.output));
   warn_all(vpc, formats::write_virtual_cloud(vpc, files, common.overwrite()));
-  say(fmt::format("{}: {} points of {} tiles", vpc, plan.points(), files.size()));
+  say(fmt::format("{}: {} points of {} tile{}", vpc, plan.points(), files.size(),
+                  files.size() == 1 ? "" : "s"));
 }
 
 void join_tiles(const JoinArguments& arguments, const Common& common) {
