@@ -182,6 +182,13 @@ TEST(Pcd, ReadsOldAndSparseHeaders) {
                                        packed(1.0, 2.0, 3.0));
   EXPECT_EQ(sparse.cloud.positions.at(0), Vec3(1, 2, 3));
   EXPECT_EQ(sparse.cloud.position_type, ScalarType::kFloat64);
+  const auto commented = scratch.read("c.pcd",
+                                      "# exported by a robot\n# .PCD v0.7\nVERSION 0.7\n"
+                                      "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\n"
+                                      "DATA ascii\n1 2 3\n");
+  EXPECT_EQ(commented.cloud.positions.at(0), Vec3(1, 2, 3));
+  EXPECT_EQ(commented.cloud.comments,
+            (std::vector<std::string>{"exported by a robot", ".PCD v0.7"}));
 }
 
 TEST(Pcd, TakesColoursPackedInAFloat) {

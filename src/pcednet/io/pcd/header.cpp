@@ -38,7 +38,8 @@ class HeaderParser {
     while (next_line()) {
       if (line_.starts_with('#')) {
         const std::string_view comment = trim(line_.substr(1));
-        if (!comment.starts_with(".PCD")) header_.comments.emplace_back(comment);
+        const bool is_magic = header_.lines == 1 && comment.starts_with(".PCD");
+        if (!is_magic) header_.comments.emplace_back(comment);
         continue;
       }
       split(line_, words_);
@@ -175,8 +176,12 @@ std::size_t PcdHeader::numbers_per_point() const {
 }
 
 bool begins_as_pcd(std::string_view start) {
-  return start.starts_with("# .PCD") || start.starts_with("VERSION ") ||
-         start.starts_with("FIELDS ");
+  if (start.starts_with("# .PCD")) return true;
+  while (start.starts_with('#')) {
+    const std::size_t end = start.find('\n');
+    start.remove_prefix(end == start.npos ? start.size() : end + 1);
+  }
+  return start.starts_with("VERSION ") || start.starts_with("FIELDS ");
 }
 
 PcdHeader read_pcd_header(const InputFile& file) {

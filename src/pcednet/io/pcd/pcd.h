@@ -10,7 +10,7 @@
 
 namespace pcednet::io {
 
-/// Whether a file with this beginning is PCD.
+/// Whether a file with this beginning is PCD: comments of any program may come first.
 bool begins_as_pcd(std::string_view start);
 
 /// Reads PCD 0.5 to 0.7: ascii, binary and binary_compressed.
