@@ -34,6 +34,7 @@ void write_curves(const std::filesystem::path& path, const std::vector<lines::Cu
   io::write_drawing(path, curves, {.overwrite = common.overwrite(), .tolerance = kTolerance});
 }
 
+/// Makes the clouds and writes each at once.
 void run(const std::string& folder, const std::vector<shapes::CloudRecipe>& recipes,
          const Common& common) {
   // Folder inputs leave that of the curves out. It is made for the first of them.
