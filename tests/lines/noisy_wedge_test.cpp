@@ -97,6 +97,22 @@ TEST(NoisyWedge, ExplainsACylinderLessThanASmoothSurface) {
   }
 }
 
+TEST(NoisyWedge, DependsOnNoLastDigit) {
+  constexpr std::size_t kFew = 28;  // cuts in several directions make the same parts
+  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+    const auto points = noisy_points(seed, [](double u) { return -std::abs(u); });
+    NearPoints rounded;
+    for (std::size_t i = 0; i < kFew; ++i) {
+      rounded.add(points.offset(i) / 3.0 * 3.0, Vec3::Zero(), 1.0);
+    }
+    const auto found = fit_half_planes(points, kFew, kNoise);
+    const auto again = fit_half_planes(rounded, kFew, kNoise);
+    ASSERT_EQ(found.has_value(), again.has_value()) << seed;
+    if (!found) continue;
+    ASSERT_LT((found->at - again->at).norm(), 1e-6) << seed;
+  }
+}
+
 TEST(NoisyWedge, NeedsPoints) {
   const auto points = noisy_points(1, [](double u) { return -std::abs(u); });
   EXPECT_FALSE(fit_half_planes(points, 13, kNoise));

@@ -23,6 +23,7 @@ constexpr double kSmallestAngle = 22.0 * std::numbers::pi / 180.0;
 constexpr int kDirections = 10;   ///< even
 constexpr std::size_t kCuts = 9;  ///< of each direction
 constexpr int kImprovements = 3;
+constexpr double kByRounding = 1e-9;     ///< of errors of the same parts, cut in two directions
 constexpr double kMostOutliers = 0.12;   ///< share of the points
 constexpr double kPrice = 2.0;           ///< in squared standard deviations: of the choice of a cut
 constexpr double kMostMeanSquare = 1.7;  ///< of the distances, in squared standard deviations
@@ -154,7 +155,7 @@ void try_direction(const CutPoints& points, int direction, BestCut& best) {
   const Frame& frame = points.frame;
   for (std::size_t a = 0, b = kCuts; a < kCuts; ++a, ++b) {
     const double error = parts.error[a] + parts.error[b];
-    if (!(error < best.error)) continue;
+    if (!(error < (1.0 - kByRounding) * best.error)) continue;
     const auto halves = half_planes(parts.plane(a, frame), parts.plane(b, frame),
                                     frame.place(parts.mean(a)), frame.place(parts.mean(b)));
     if (halves) best = {halves, error, direction};
