@@ -51,6 +51,17 @@ TEST(FindLines, RefusesWhatIsNoProbability) {
   }
 }
 
+TEST(FindLines, AreCertainAtMostWhereBothProbabilitiesAreLarge) {
+  const Cloud cloud = cube(3000);
+  EdgePoints points = points_of(cloud);
+  std::vector<float> p;
+  for (const std::uint8_t its_class : cloud.classes) p.push_back(its_class == kSharpEdge ? 1 : 0);
+  points.p_sharp = points.p_smooth = p;
+  const auto curves = find_lines(points);
+  EXPECT_EQ(curves.size(), 12u);
+  for (const Curve& curve : curves) EXPECT_DOUBLE_EQ(curve.confidence, 1.0);
+}
+
 TEST(FindLines, FollowsClassesThatWereCorrectedAgainstTheirProbabilities) {
   const Cloud cloud = cube(8000);
   std::vector<float> as_classes, painted;  // the edges above were painted

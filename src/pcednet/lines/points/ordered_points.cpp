@@ -21,7 +21,8 @@ constexpr float kMostOfNonEdge = 0.501f, kLeastOfEdge = 0.1f;
 /// and counts alone.
 float probability_of(const EdgePoints& points, std::uint32_t i) {
   if (points.p_sharp.empty()) return 0.0f;
-  const float p = points.p_sharp[i] + (points.p_smooth.empty() ? 0.0f : points.p_smooth[i]);
+  const float p =
+      std::min(1.0f, points.p_sharp[i] + (points.p_smooth.empty() ? 0.0f : points.p_smooth[i]));
   const std::uint8_t its_class = points.classes[i];
   if (its_class == kSharpEdge || its_class == kSmoothEdge) return p < kLeastOfEdge ? 1.0f : p;
   return its_class != kBoundary && p > kMostOfNonEdge ? 0.0f : p;
