@@ -47,6 +47,19 @@ TEST(ExactFolds, AreTheEdgesOfAThinPlate) {
   }
 }
 
+TEST(ExactFolds, AreNoneOnAWideCylinder) {
+  constexpr double kRadius = 300.0;
+  constexpr int kPoints = 60000;  // take 16 seconds if each grows the strip that it is on
+  PlanePart part;
+  for (int i = 0; i < kPoints; ++i) {
+    const double angle = kTurn * part.random.uniform();
+    const Vec3 out(std::cos(angle), std::sin(angle), 0.0);
+    const double up = kPoints / (kTurn * kRadius) * part.random.uniform();
+    part.add(kRadius * out + up * Vec3::UnitZ(), out, true);
+  }
+  EXPECT_TRUE(part.edges().pieces.empty());
+}
+
 TEST(ExactFolds, OfFewPointsReachFromVertexToVertex) {
   const Vec3 size(16.0, 3.4, 3.4);
   std::set<std::tuple<int, int, int, int>> whole;  // the part, and twice the middle's coordinates

@@ -114,6 +114,7 @@ class PatchGrowth {
         spacing_(spacing),
         reach_(kReachOfPlane * spacing),
         taken_(candidates.points.size(), 0),
+        in_vain_(candidates.points.size(), 0),
         seen_(candidates.points.size(), 0) {}
 
   /// Grows a plane from this row if `least_on` points near it are on one.
@@ -131,7 +132,8 @@ class PatchGrowth {
   const Candidates& candidates_;
   double spacing_, reach_;
   std::vector<std::uint8_t> taken_;
-  std::vector<std::uint32_t> seen_;  ///< in which spread() a row was last seen
+  std::vector<std::uint8_t> in_vain_;  ///< the rows of large growths that were no plane
+  std::vector<std::uint32_t> seen_;    ///< in which spread() a row was last seen
   std::uint32_t spreads_ = 0;
   FittedPlane plane_ = {};
   std::vector<std::uint32_t> members_;
@@ -186,13 +188,17 @@ void PatchGrowth::spread(std::uint32_t row) {
 }
 
 void PatchGrowth::try_at(std::uint32_t row, std::size_t least_on) {
-  if (taken_[row] || !set_first(row, least_on)) return;
+  // Every point of a wide cylinder would grow the same strip of it again.
+  if (taken_[row] || in_vain_[row] || !set_first(row, least_on)) return;
   spread(row);
   if (members_.size() < kManyMembers) spread(row);  // as the first plane was that of three points
   if (members_.size() < kLeastMembers) return;
   const auto plane = sure_plane(cloud_, members_, plane_, reach_);
-  if (!plane || plane->width < kLeastPatchWidth * spacing_) return;
-  for (const std::uint32_t i : members_) taken_[candidates_.rows[i]] = 1;
+  const bool is_plane = plane && plane->width >= kLeastPatchWidth * spacing_;
+  if (!is_plane && members_.size() < kManyMembers) return;
+  std::vector<std::uint8_t>& marks = is_plane ? taken_ : in_vain_;
+  for (const std::uint32_t i : members_) marks[candidates_.rows[i]] = 1;
+  if (!is_plane) return;
   found.push_back({plane->point, plane->normal, reach_, members_});
 }
 
