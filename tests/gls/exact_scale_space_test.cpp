@@ -293,6 +293,25 @@ TEST(ExactScaleSpace, DoesNotProjectToWhereNothingIs) {
   }
 }
 
+TEST(ExactScaleSpace, LeavesNothingWhereNormalsCancel) {
+  // The centre of a sphere is at a distance from it, but no gradient there tells a side.
+  test::Cloud cloud;
+  cloud.add(Vec3::Zero(), Vec3::Zero());
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {1.0, -1.0})
+      cloud.add(side * Vec3::Unit(axis), side * Vec3::Unit(axis));
+  }
+  ScaleSpaceOptions options;
+  options.range.s_min = 1.2, options.range.s_max = 1.3;
+  for (const auto reconstruction : {Reconstruction::kSphere, Reconstruction::kSphereMls}) {
+    options.reconstruction = reconstruction;
+    const ExactScaleSpace space(cloud.points(), options);
+    const auto matrix = test::describe(space, {0});
+    for (const FitStatus status : matrix.status) EXPECT_EQ(status, FitStatus::kUndefined);
+    for (const double feature : matrix.features) EXPECT_EQ(feature, 0.0);
+  }
+}
+
 TEST(ExactScaleSpace, CountsThePointItselfAndNeighboursWithinTheRadiusOnly) {
   // Seven points in a row, one apart: at radius t the middle one has those closer than t.
   test::Cloud cloud;

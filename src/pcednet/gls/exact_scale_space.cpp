@@ -118,6 +118,7 @@ ExactScaleSpace::Fit ExactScaleSpace::fit(std::span<const LocalNeighbour> neighb
 ExactScaleSpace::Fit ExactScaleSpace::project(std::uint32_t place, Fit fit, double t,
                                               const std::optional<double>& gate,
                                               Scratch& scratch) const {
+  if (fit.status == FitStatus::kUndefined) return fit;
   Vec3 offset = Vec3::Zero();
   for (int step = 0; step < options_.max_projection_steps; ++step) {
     if (fit.status != FitStatus::kStable) break;
