@@ -285,6 +285,18 @@ TEST(ClassifyEdges, LeavesWhatHasNoPlaceUnlabelledAndKeepsOldLabels) {
   EXPECT_EQ(kept->value(5), old_labels[5]);
 }
 
+TEST(ClassifyEdges, KeepsOldLabelsBesideAClassOfAnotherProgram) {
+  PointCloud cloud = cube(1200, 4);
+  const EdgeModel model = train_on(cloud, quick(3)).model;
+  for (const char* name : {"scalar_class", "scalar_edge_class"}) {
+    PointCloud labelled = cloud;
+    set_attribute(labelled, make_attribute(name, std::vector<float>(cloud.size(), 7.0f)));
+    const PreparedCloud prepared = prepare(labelled);
+    EXPECT_TRUE(add_result(labelled, prepared, classify(prepared, model), model).labels) << name;
+    ASSERT_NE(find_attribute(labelled, "scalar_input_label"), nullptr) << name;
+  }
+}
+
 TEST(PrepareCloud, RefusesWhatHasNoSurface) {
   const PointCloud empty;
   EXPECT_ERROR(ErrorKind::kInsufficient, prepare(empty));

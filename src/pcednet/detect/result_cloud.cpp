@@ -105,8 +105,7 @@ KeptInput add_result(PointCloud& cloud, std::span<const Vec3> made, const Classi
                      const EdgeModel& model, const ResultOptions& options) {
   check_size(result, cloud.size());
   KeptInput kept{.replaced = replaced_attributes(cloud)};
-  const bool classified_before = find_attribute(cloud, "scalar_edge_class") != nullptr ||
-                                 find_attribute(cloud, "scalar_class") != nullptr;
+  const bool classified_before = names_model(cloud) || has_result_columns(cloud);
   if (cloud.has_labels() && !classified_before) {
     set_attribute(cloud, make_attribute(kInputLabels, cloud.labels));
     kept.labels = true;
