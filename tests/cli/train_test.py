@@ -162,6 +162,13 @@ class Train(CliTest):
         self.assertIn("another descriptor", result.stderr)
         self.assertFalse((self.folder / "m.safetensors").exists())
 
+    def test_refuses_experts_of_as_many_other_classes(self):
+        self.train("few.safetensors", "--epochs", 1)
+        result = run("train", self.folder / "clouds", "-o", self.folder / "m.safetensors",
+                     "--classes", 2, "--expert", self.pieces_model(), "below=9", expect=5)
+        self.assertIn("its classes are whole, piece, not edges", result.stderr)
+        self.assertNotIn("epoch", result.stdout + result.stderr)
+
     def test_takes_experts_that_learnt_without_octaves(self):
         tied = ("--epochs", 1, "--s-max-ratio", 8)
         few = self.train("few.safetensors", *tied)

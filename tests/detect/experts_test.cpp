@@ -148,5 +148,12 @@ TEST_F(ExpertsTest, AreRefusedIfTheyWantAnotherDescription) {
   EXPECT_TRUE(model.experts.empty());
 }
 
+TEST_F(ExpertsTest, AreRefusedIfTheyHaveOtherClassesOfTheSameNumber) {
+  EdgeModel model = *main_, others = *few_;
+  others.table = parse_classes("wall,roof,ground");
+  EXPECT_ERROR(ErrorKind::kModelMismatch, join_expert(model, others, {.below = kFewer}));
+  EXPECT_TRUE(model.experts.empty());
+}
+
 }  // namespace
 }  // namespace pcednet::detect

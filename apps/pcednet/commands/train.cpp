@@ -162,8 +162,8 @@ void warn_of_steps(const LabelledFile& file, const detect::PreparedCloud& prepar
                    [&] { return detect::smallest_scale(prepared, range); });
 }
 
-detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common& common,
-                                  const Progress& progress) {
+detect::TrainedModel train_clouds(const TrainArguments& arguments, const Experts& experts,
+                                  const Common& common, const Progress& progress) {
   auto options = options_of(arguments);
   std::optional<detect::EdgeModel> start;
   if (!arguments.start.empty()) {
@@ -176,6 +176,7 @@ detect::TrainedModel train_clouds(const TrainArguments& arguments, const Common&
   std::vector<LabelledFile> files =
       read_labelled_files(arguments.inputs, label_codes(arguments.las_classification),
                           arguments.no_normals, options, progress);
+  for (const auto& expert : experts.models) detect::check_classes(expert, options.table);
   if (start) {
     annotate::check_classes_of_start(*start, options.table);
     annotate::check_each_is_labelled(labels_of(files), options.table);
@@ -257,8 +258,9 @@ void train(const TrainArguments& arguments, const Common& common) {
   StageClock clock(console_progress(common));
   clock.begin("read");
   const Experts experts = read_experts(arguments);
-  auto trained = arguments.project.empty() ? train_clouds(arguments, common, clock.progress())
-                                           : train_project(arguments, common, clock.progress());
+  auto trained = arguments.project.empty()
+                     ? train_clouds(arguments, experts, common, clock.progress())
+                     : train_project(arguments, common, clock.progress());
   if (trained.epochs == 0)
     throw Error(ErrorKind::kCancelled, "stopped by the user before the end of the first epoch");
   for (std::size_t i = 0; i < experts.models.size(); ++i) {

@@ -300,8 +300,20 @@ void check_fits(const EdgeModel& expert, const gls::ScaleSpaceOptions& descripto
       fmt::format("{}: its networks need another descriptor, or other classes", expert.name));
 }
 
+void check_classes(const EdgeModel& expert, const ClassTable& table) {
+  if (names_of(expert.table) == names_of(table)) return;
+  throw Error(ErrorKind::kModelMismatch, fmt::format("{}: its classes are {}, not {}", expert.name,
+                                                     names_of(expert.table), names_of(table)));
+}
+
 void join_expert(EdgeModel& model, const EdgeModel& expert, const CloudKind& kind) {
   check_fits(expert, model.descriptor, model.classes.size());
+  check_classes(expert, model.table);
+  if (expert.classes != model.classes) {
+    throw Error(ErrorKind::kModelMismatch,
+                fmt::format("{}: it knows the classes {}, not {}", expert.name,
+                            text_of(expert.classes), text_of(model.classes)));
+  }
   model.experts.push_back({kind, expert.network, expert.context});
 }
 

@@ -88,8 +88,11 @@ void drop_context(EdgeModel& model);
 void check_fits(const EdgeModel& expert, const gls::ScaleSpaceOptions& descriptor,
                 std::size_t classes);
 
-/// Adds `expert` for clouds of that kind; earlier experts take precedence. Throws what check_fits()
-/// throws.
+/// Throws Error(kModelMismatch) unless the classes of `expert` are those of `table`.
+void check_classes(const EdgeModel& expert, const ClassTable& table);
+
+/// Adds `expert` for clouds of that kind; earlier experts take precedence. Throws what both checks
+/// throw, and Error(kModelMismatch) if its networks know others of the classes.
 void join_expert(EdgeModel& model, const EdgeModel& expert, const CloudKind& kind);
 
 /// Reads a model file. Throws Error(kUnreadable) if there is none, Error(kModelMismatch), naming

@@ -1,13 +1,10 @@
 #include "pcednet/detect/piece.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
 
-#include "pcednet/core/error.h"
 #include "pcednet/detect/outputs.h"
 #include "pcednet/nn/predict.h"
 
@@ -56,9 +53,7 @@ CloudTraits traits_for(const EdgeModel& model, const DescribedCloud& cloud) {
 
 void check_pieces(const EdgeModel& pieces, const gls::ScaleSpaceOptions& descriptor) {
   check_fits(pieces, descriptor, kPieceOutputs);
-  if (names_of(pieces.table) == "whole, piece") return;
-  throw Error(ErrorKind::kModelMismatch, fmt::format("{}: its classes are {}, not whole and piece",
-                                                     pieces.name, names_of(pieces.table)));
+  check_classes(pieces, parse_classes("whole,piece"));
 }
 
 void join_pieces(EdgeModel& model, const EdgeModel& pieces) {
