@@ -261,6 +261,29 @@ TEST_F(EdgeModelFile, RefusesAContextNetworkForOtherClasses) {
   EXPECT_NE(std::string(error->what()).find("context"), std::string::npos);
 }
 
+TEST_F(EdgeModelFile, RefusesADescriptorThatIsNotPossible) {
+  EdgeModel model = train_on(cube(800, 3), quick(3)).model;
+  model.descriptor.side_gate = 0.4;
+  model.descriptor.range.s_max_ratio = 8.0;
+  save_model(path_, model, Overwrite::kNo);
+  const nn::Safetensors content = nn::read_safetensors(path_);
+  EXPECT_EQ(load_model(path_).descriptor, model.descriptor);
+  for (const auto& [key, value] : {std::pair("descriptor_side_gate", "nan"),
+                                   {"descriptor_side_gate", "-1.5"},
+                                   {"descriptor_s_max_ratio", "inf"},
+                                   {"descriptor_s_max_ratio", "-8"},
+                                   {"descriptor_s_max_fraction", "0"},
+                                   {"descriptor_projection_steps", "-1"}}) {
+    nn::Safetensors changed = content;
+    changed.metadata[key] = value;
+    nn::write_safetensors(path_, changed, Overwrite::kYes);
+    const auto error = test::error_of([&] { load_model(path_); });
+    ASSERT_TRUE(error) << key << " " << value;
+    EXPECT_EQ(error->kind(), ErrorKind::kModelMismatch) << key << " " << value;
+    EXPECT_NE(std::string(error->what()).find(path_.string()), std::string::npos);
+  }
+}
+
 TEST_F(EdgeModelFile, RefusesANetworkWithoutItsDescriptor) {
   nn::write_safetensors(path_, nn::to_safetensors(train_on(cube(800, 3), quick(3)).model.network));
   const auto error = test::error_of([&] { load_model(path_); });

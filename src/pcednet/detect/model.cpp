@@ -14,6 +14,7 @@
 #include "pcednet/detect/cloud_kind.h"
 #include "pcednet/detect/context.h"
 #include "pcednet/detect/outputs.h"
+#include "pcednet/gls/oriented_points.h"
 #include "pcednet/nn/metadata.h"
 #include "pcednet/nn/model_file.h"
 
@@ -110,6 +111,12 @@ std::vector<std::uint8_t> take_classes(nn::Metadata& metadata, const ClassTable&
   return classes;
 }
 
+double take_positive(nn::Metadata& metadata, const std::string& key) {
+  const auto number = metadata.take_number<double>(key);
+  if (!(number > 0.0)) metadata.refuse_value(key, fmt::format("{}", number));
+  return number;
+}
+
 gls::ScaleSpaceOptions take_descriptor(nn::Metadata& metadata) {
   gls::ScaleSpaceOptions descriptor;
   descriptor.scales = metadata.take_number<int>("descriptor_scales");
@@ -123,14 +130,19 @@ gls::ScaleSpaceOptions take_descriptor(nn::Metadata& metadata) {
     descriptor.second_gate = metadata.take_number<double>("descriptor_second_gate");
   }
   if (metadata.has("descriptor_s_max_fraction")) {
-    descriptor.range.s_max_fraction = metadata.take_number<double>("descriptor_s_max_fraction");
+    descriptor.range.s_max_fraction = take_positive(metadata, "descriptor_s_max_fraction");
   }
   if (metadata.has("descriptor_s_max_ratio")) {
-    descriptor.range.s_max_ratio = metadata.take_number<double>("descriptor_s_max_ratio");
+    descriptor.range.s_max_ratio = take_positive(metadata, "descriptor_s_max_ratio");
   }
   if (metadata.has("descriptor_octaves")) {
     metadata.take_fixed("descriptor_octaves", "1");
     descriptor.range.octaves = true;
+  }
+  try {
+    gls::check({}, descriptor);
+  } catch (const Error& error) {
+    metadata.refuse(error.what());
   }
   return descriptor;
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <string>
 #include <string_view>
@@ -28,13 +29,15 @@ class Metadata {
   /// Takes a value that must be `wanted`.
   void take_fixed(const std::string& key, std::string_view wanted);
 
+  /// A finite number.
   template <typename Number>
   Number take_number(const std::string& key) {
     const std::string text = take(key);
     Number number{};
     const char* const end = text.data() + text.size();
     const auto [stop, error] = std::from_chars(text.data(), end, number);
-    if (error != std::errc() || stop != end) refuse_value(key, text);
+    const bool is_read = error == std::errc() && stop == end;
+    if (!is_read || !std::isfinite(static_cast<double>(number))) refuse_value(key, text);
     return number;
   }
 
