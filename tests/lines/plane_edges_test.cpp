@@ -10,6 +10,7 @@
 #include <numbers>
 #include <numeric>
 #include <set>
+#include <string>
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/random_vectors.h"
@@ -93,6 +94,17 @@ TEST(PlaneEdges, DrawASparseHipRoofWithItsSixCorners) {
       EXPECT_LT(nearest, 0.15) << slope;  // half a spacing
     }
   }
+}
+
+TEST(PlaneEdges, StopAtEavesWhenTold) {
+  const PlainCloud cloud = hip_roof(700, 0.5, 0.005);
+  std::atomic stop = false;
+  const Progress stopping = {.report =
+                                 [&](const std::string& step, double) {
+                                   if (step == "eaves") stop = true;
+                                 },
+                             .cancelled = [&] { return stop.load(); }};
+  EXPECT_ERROR(ErrorKind::kCancelled, find_lines(cloud.points(), {.boundaries = true}, &stopping));
 }
 
 TEST(PlaneEdges, KeepTheirDihedralAngle) {

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
+#include "pcednet/core/parallel.h"
 #include "pcednet/lines/curves/support_line.h"
 #include "pcednet/lines/points/chart.h"
 #include "pcednet/lines/roofs/outline.h"
@@ -15,6 +17,8 @@
 
 namespace pcednet::lines {
 namespace {
+
+constexpr std::size_t kEavesAtOnce = 16;
 
 // In spacings.
 constexpr double kDisc = 2.5;    ///< radius that rolls around a face
@@ -134,7 +138,7 @@ class Outlines {
   Outlines(const OrderedPoints& cloud, const Faces& faces, const Sampling& sampling,
            const std::vector<Fold>& folds, const spatial::KdTree& plan);
 
-  void add(std::uint32_t face, const std::vector<std::uint32_t>& points);
+  void add(std::uint32_t face, const std::vector<std::uint32_t>& points, const Progress* progress);
   std::vector<Eave> found;
   std::vector<Piece> arcs;
   std::vector<std::vector<Vec2>> charted;  ///< the points of each face
@@ -264,7 +268,8 @@ void Outlines::add_run(std::uint32_t face, std::vector<Vec2> run) {
   }
 }
 
-void Outlines::add(std::uint32_t face, const std::vector<std::uint32_t>& points) {
+void Outlines::add(std::uint32_t face, const std::vector<std::uint32_t>& points,
+                   const Progress* progress) {
   const Chart chart = chart_of(faces_.faces[face]);
   std::vector<Vec2>& flat = charted[face];
   directions_.clear();
@@ -276,6 +281,7 @@ void Outlines::add(std::uint32_t face, const std::vector<std::uint32_t>& points)
   std::stable_sort(loops.begin(), loops.end(),
                    [](const auto& a, const auto& b) { return a.size() > b.size(); });
   for (const auto& outline : loops) {
+    throw_if_cancelled(progress);
     std::vector<Vec2> chain;
     std::vector<bool> taken;
     for (const OutlinePoint& point : outline) {
@@ -369,16 +375,23 @@ Piece edge_of(const Eave& eave, const Faces& faces, const std::vector<Vec2>& poi
 
 std::vector<Piece> find_eaves(const OrderedPoints& cloud, const Faces& faces,
                               const Sampling& sampling, const std::vector<Fold>& folds,
-                              const spatial::KdTree& plan) {
+                              const spatial::KdTree& plan, const Progress* progress) {
   const double spacing = sampling.spacing;
   Outlines outlines(cloud, faces, sampling, folds, plan);
   const auto points = points_of(cloud, faces, spacing);
-  for (std::uint32_t face = 0; face < points.size(); ++face) outlines.add(face, points[face]);
+  for (std::uint32_t f = 0; f < points.size(); ++f) outlines.add(f, points[f], progress);
+  const std::vector<Eave>& eaves = outlines.found;
   align(outlines.found, faces, spacing, folds);
+  std::vector<Piece> straight(eaves.size());
+  Stage stage(progress, "eaves", eaves.size());
+  parallel_blocks(eaves.size(), kEavesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      straight[i] = edge_of(eaves[i], faces, outlines.charted[eaves[i].face], spacing);
+    }
+    stage.advance(end - begin);
+  });
   std::vector<Piece> edges = std::move(outlines.arcs);
-  for (const Eave& eave : outlines.found) {
-    edges.push_back(edge_of(eave, faces, outlines.charted[eave.face], spacing));
-  }
+  append(edges, std::move(straight));
   return edges;
 }
 

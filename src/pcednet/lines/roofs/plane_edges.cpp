@@ -56,7 +56,7 @@ std::optional<std::vector<Piece>> find_plane_edges(const OrderedPoints& cloud,
   const double curved = (1.0 - faces.share) * static_cast<double>(cloud.size());
   if (faces.share < kPlanePart || curved > kMostCurved) return std::nullopt;
   std::vector<Fold> folds = find_roof_folds(cloud, faces, spacing);
-  std::vector<Piece> pieces = find_eaves(cloud, faces, sampling, folds, plan);
+  std::vector<Piece> pieces = find_eaves(cloud, faces, sampling, folds, plan, progress);
   for (Fold& fold : folds) pieces.push_back(std::move(fold.piece));
   return pieces;
 }
