@@ -106,6 +106,8 @@ class AnnotateSession(AnnotateTest):
             server.post("/api/save", {"what": what, "overwrite": True})
             self.assertEqual(server.request(f"/api/download/{what}")[2],
                              pathlib.Path(saved["path"]).read_bytes())
+        self.assertEqual(server.post("/api/save", {"what": "cloud", "name": 7}, expect=400)["error"],
+                         "save: type must be string, but is number")
         server.post("/api/save", {"what": "cloud", "name": "../x.ply"}, expect=400)
         server.post("/api/save", {"what": "cloud", "name": "cube.ply", "overwrite": True}, expect=400)
         model = (self.folder / "cube.safetensors").read_bytes()

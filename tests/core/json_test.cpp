@@ -19,6 +19,15 @@ TEST(Json, RefusesWhatIsNotJson) {
   EXPECT_THROW(parse_ordered_json("{\"a\":}"), Json::parse_error);
 }
 
+TEST(Json, SaysWhatIsWrongInWords) {
+  try {
+    parse_json("[]").at(3);
+    FAIL();
+  } catch (const Json::exception& error) {
+    EXPECT_EQ(words_of(error), "array index 3 is out of range");
+  }
+}
+
 TEST(Json, RefusesOrReplacesBytesThatAreNotUtf8) {
   const Json name = "caf\xE9.ply";
   EXPECT_THROW(to_text(name), Json::type_error);

@@ -20,6 +20,12 @@ OrderedJson parse_ordered_json(std::string_view text) {
   return OrderedJson::parse(text);
 }
 
+std::string words_of(const Json::exception& error) {
+  const std::string_view words = error.what();
+  const std::size_t end = words.find("] ");
+  return std::string(words.starts_with('[') && end != words.npos ? words.substr(end + 2) : words);
+}
+
 std::string to_text(const Json& json, int indent, NotUtf8 bytes) {
   return text_of(json, indent, bytes);
 }

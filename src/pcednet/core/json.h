@@ -16,6 +16,9 @@ using OrderedJson = nlohmann::ordered_json;
 Json parse_json(std::string_view text);
 OrderedJson parse_ordered_json(std::string_view text);
 
+/// What the error says, without the "[json.exception.parse_error.101] " of the library.
+std::string words_of(const Json::exception& error);
+
 /// The treatment of bytes that are not UTF-8, which names of files may hold.
 enum class NotUtf8 {
   kRefuse,   ///< throws Json::type_error

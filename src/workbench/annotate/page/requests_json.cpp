@@ -148,7 +148,7 @@ auto parsed(std::string_view text, const char* what, const Read& read) {
   try {
     return read(parse_json(text));
   } catch (const Json::exception& error) {
-    throw Error(ErrorKind::kUsage, fmt::format("{}: {}", what, error.what()));
+    throw Error(ErrorKind::kUsage, fmt::format("{}: {}", what, words_of(error)));
   }
 }
 

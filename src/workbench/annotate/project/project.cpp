@@ -217,13 +217,6 @@ Json head_of(const Inputs& inputs) {
   return {{"format", kSeveralFormat}, {"inputs", std::move(list)}};
 }
 
-/// What a reader of the file needs: "[json.exception.parse_error.101] " is of the library.
-std::string words_of(const Json::exception& error) {
-  const std::string_view words = error.what();
-  const std::size_t end = words.find("] ");
-  return std::string(words.starts_with('[') && end != words.npos ? words.substr(end + 2) : words);
-}
-
 /// Runs `read` and turns any exception into Error(kUnreadable).
 template <typename Read>
 auto strictly(Read&& read) {
