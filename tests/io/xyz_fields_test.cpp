@@ -70,5 +70,17 @@ TEST(XyzFields, NumbersOfTextLoseNoType) {
   EXPECT_EQ(formats::losses("b.txt", narrow), Strings{"number types of attributes"});
 }
 
+TEST(XyzFields, TellWhereWholeNumbersAreRounded) {
+  const Scratch scratch;
+  const auto warnings_of = [&](const std::string& text) {
+    return scratch.read("a.csv", text).warnings;
+  };
+  EXPECT_EQ(warnings_of("x,y,z,id,t\n1,2,3,1234567890123456789,9007199254740992\n"
+                        "4,5,6,-9007199254740993,1e300\n"),
+            Strings{"column id: 2 whole numbers beyond 2^53 are rounded"});
+  EXPECT_EQ(warnings_of("x,y,z,id\n1,2,3,9007199254740994\n4,5,6,0.12345678901234567890\n"),
+            Strings());
+}
+
 }  // namespace
 }  // namespace pcednet::io

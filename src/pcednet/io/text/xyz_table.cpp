@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "pcednet/io/text_scan.h"
@@ -32,6 +33,15 @@ std::string without_quotes(std::string_view line) {
     plain.append(is_number ? word : line.substr(begin, end + 1 - begin));
     at = end + 1;
   }
+}
+
+/// Whether `number`, as which the word was read, is another whole number than the word. Doubles
+/// hold all of them up to 2^53.
+bool is_rounded(std::string_view word, double number) {
+  const double size = std::abs(number);
+  if (!(size >= 0x1p53 && size < 0x1p64)) return false;
+  const auto whole = parse_count(word.substr(word.starts_with('-')));
+  return whole && *whole != static_cast<std::uint64_t>(size);
 }
 
 }  // namespace
@@ -277,6 +287,7 @@ void TableReader::take_row(std::string_view line) {
     const auto number = number_of(words_[c]);
     if (!number) throw error(number_fault(words_[c]));
     row[c] = *number;
+    entries_[c].rounded += is_rounded(words_[c], *number);
   }
 }
 
@@ -300,6 +311,9 @@ std::vector<Column> TableReader::columns(const TableFacts& facts) {
     columns.push_back({names_[c].empty() ? fmt::format("scalar_{}", c + 1) : names_[c]});
     columns[c].skip = entries_[c].are_text;
     if (entries_[c].are_text) of_text.push_back(columns[c].name);
+    if (entries_[c].rounded == 0) continue;
+    warnings_.push_back(fmt::format("column {}: {} whole numbers beyond 2^53 are rounded",
+                                    columns[c].name, entries_[c].rounded));
   }
   if (!of_text.empty()) {
     warnings_.push_back(fmt::format("columns of text are left out: {}", fmt::join(of_text, ", ")));

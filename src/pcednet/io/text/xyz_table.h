@@ -84,7 +84,7 @@ class TableReader {
   /// The words of a column.
   struct Entries {
     bool are_numbers = false, are_text = false;  ///< neither: none is there so far
-    std::size_t missing = 0;
+    std::size_t missing = 0, rounded = 0;
   };
   std::vector<Entries> entries_ = {};
   NumberTable table_ = NumberTable(0);
