@@ -29,7 +29,7 @@ double sq_gap(const Vec3& p, const Vec3& min, const Vec3& max) {
 
 TEST(BoxTree, FindsAllNearABox) {
   const std::vector<Vec3> points = ordered_points();
-  const BoxTree tree(points.size(), points.front(), [&](std::size_t i) { return points[i]; });
+  const BoxTree tree(points.size(), [&](std::size_t i) { return points[i]; });
   Random random(4);
   for (int query = 0; query < 200; ++query) {
     const Vec3 min = uniform_vector(random);
@@ -49,10 +49,25 @@ TEST(BoxTree, FindsAllNearABox) {
   }
 }
 
+TEST(BoxTree, FindsNoMoreFarFromTheFirstPoints) {
+  // Where two clumps are far apart, each is as finely divided as it would be alone.
+  std::vector<Vec3> points = ordered_points();
+  const std::size_t here = points.size();
+  for (std::size_t i = 0; i < here; ++i) points.push_back(points[i] + Vec3::Constant(0x1p30));
+  for (Vec3& p : points) p -= Vec3::Constant(0x1p30), p += Vec3::Constant(0x1p30);
+  const BoxTree tree(points.size(), [&](std::size_t i) { return points[i]; });
+  std::vector<std::uint32_t> near, far;
+  const Vec3 there = points[here];
+  tree.runs_near(points.front(), points.front(), 0.05, near);
+  tree.runs_near(there, there, 0.05, far);
+  EXPECT_GT(near.size(), 0u);
+  EXPECT_LE(far.size(), near.size() + 2);
+}
+
 TEST(BoxTree, FindsTheNearestAsASortOfAllDistances) {
   const std::vector<Vec3> points = ordered_points();
   const auto position_at = [&](std::size_t i) { return points[i]; };
-  const BoxTree tree(points.size(), points.front(), position_at);
+  const BoxTree tree(points.size(), position_at);
   Random random(5);
   for (int query = 0; query < 100; ++query) {
     const std::size_t item = random.index(points.size());
@@ -73,11 +88,11 @@ TEST(BoxTree, IsContentWithFewOrNoThings) {
   const auto position_at = [&](std::size_t i) { return points[i]; };
   std::array<double, 11> found;
   std::vector<std::uint32_t> runs;
-  const BoxTree none(0, Vec3::Zero(), position_at);
+  const BoxTree none(0, position_at);
   none.runs_near(Vec3::Zero(), Vec3::Ones(), 1.0, runs);
   EXPECT_TRUE(runs.empty());
   points = {Vec3::Zero(), Vec3::UnitX()};
-  const BoxTree two(2, Vec3::Zero(), position_at);
+  const BoxTree two(2, position_at);
   EXPECT_EQ(two.nearest(0, found, position_at), 2u);
   EXPECT_EQ(found[1], 1.0);
 }

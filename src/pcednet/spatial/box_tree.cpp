@@ -2,19 +2,6 @@
 
 namespace pcednet::spatial {
 
-BoxTree::Box BoxTree::outward(const Vec3& min, const Vec3& max) const {
-  constexpr float kUlp = std::numeric_limits<float>::epsilon();
-  Box box;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const auto axis = static_cast<Eigen::Index>(a);
-    const auto low = static_cast<float>(min[axis] - origin_[axis]);
-    const auto high = static_cast<float>(max[axis] - origin_[axis]);
-    box.min[a] = low - std::abs(low) * kUlp;
-    box.max[a] = high + std::abs(high) * kUlp;
-  }
-  return box;
-}
-
 void BoxTree::add_rows() {
   while (rows_.back().size() > kFanOut) {
     const std::vector<Box>& finer = rows_.back();
@@ -26,8 +13,8 @@ void BoxTree::add_rows() {
 
 void BoxTree::runs_near(const Vec3& min, const Vec3& max, double distance,
                         std::vector<std::uint32_t>& runs) const {
-  const Box wanted = outward(min, max);
-  const auto sq_distance = static_cast<float>(distance * distance * 1.00001);
+  const Box wanted = {min, max};
+  const double sq_distance = distance * distance;
   std::vector<std::pair<std::size_t, std::size_t>> stack;  // row, box
   const auto push = [&](std::size_t row, std::size_t begin, std::size_t end) {
     // Backwards, so that boxes come off the stack in their order.

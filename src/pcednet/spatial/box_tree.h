@@ -14,9 +14,6 @@ namespace pcednet::spatial {
 
 /// A tree of boxes over items along a space-filling curve. Runs of items are compact, so the tree
 /// consists of the boxes of runs, and of runs of runs.
-///
-/// Boxes are relative to an origin, in float and rounded outwards: a query may find slightly too
-/// much, never too little. Coordinates relative to the origin must fit a float.
 class BoxTree {
  public:
   static constexpr std::size_t kLeaf = 8;    ///< items per box of the lowest row
@@ -26,7 +23,7 @@ class BoxTree {
 
   /// `position_at(i)` is the position of item `i` of `count`.
   template <typename PositionAt>
-  BoxTree(std::size_t count, const Vec3& origin, PositionAt&& position_at);
+  BoxTree(std::size_t count, PositionAt&& position_at);
 
   /// Appends the runs (items [kLeaf * run, kLeaf * (run + 1))) whose boxes are closer than
   /// `distance` to the box from `min` to `max`, in order.
@@ -41,44 +38,36 @@ class BoxTree {
 
  private:
   struct Box {
-    std::array<float, 3> min, max;
+    Vec3 min = Vec3::Constant(std::numeric_limits<double>::max());
+    Vec3 max = Vec3::Constant(std::numeric_limits<double>::lowest());
 
-    Box() {
-      min.fill(std::numeric_limits<float>::max());
-      max.fill(std::numeric_limits<float>::lowest());
-    }
     void grow(const Box& box);
-    float sq_gap(const Box& box) const;
+    double sq_gap(const Box& box) const;
   };
-  Box outward(const Vec3& min, const Vec3& max) const;
   static constexpr std::size_t kMostRows = 21;  ///< 8^21 items
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   void add_rows();
 
   std::size_t count_ = 0;
-  Vec3 origin_ = Vec3::Zero();
   std::vector<std::vector<Box>> rows_;  ///< from the runs up
 };
 
 inline void BoxTree::Box::grow(const Box& box) {
-  for (std::size_t a = 0; a < 3; ++a) {
-    min[a] = std::min(min[a], box.min[a]);
-    max[a] = std::max(max[a], box.max[a]);
-  }
+  min = min.cwiseMin(box.min);
+  max = max.cwiseMax(box.max);
 }
 
-inline float BoxTree::Box::sq_gap(const Box& box) const {
-  float sum = 0.0f;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const float gap = std::max({0.0f, min[a] - box.max[a], box.min[a] - max[a]});
+inline double BoxTree::Box::sq_gap(const Box& box) const {
+  double sum = 0.0;
+  for (Eigen::Index a = 0; a < 3; ++a) {
+    const double gap = std::max({0.0, min[a] - box.max[a], box.min[a] - max[a]});
     sum += gap * gap;
   }
   return sum;
 }
 
 template <typename PositionAt>
-BoxTree::BoxTree(std::size_t count, const Vec3& origin, PositionAt&& position_at)
-    : count_(count), origin_(origin) {
+BoxTree::BoxTree(std::size_t count, PositionAt&& position_at) : count_(count) {
   std::vector<Box> row((count + kLeaf - 1) / kLeaf);
   parallel_blocks(row.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t run = begin; run < end; ++run) {
@@ -88,7 +77,7 @@ BoxTree::BoxTree(std::size_t count, const Vec3& origin, PositionAt&& position_at
         min = min.cwiseMin(position);
         max = max.cwiseMax(position);
       }
-      row[run] = outward(min, max);
+      row[run] = {min, max};
     }
   });
   rows_.push_back(std::move(row));
@@ -98,10 +87,9 @@ BoxTree::BoxTree(std::size_t count, const Vec3& origin, PositionAt&& position_at
 template <typename PositionAt>
 std::size_t BoxTree::nearest(std::size_t item, std::span<double> sq_distances,
                              PositionAt&& position_at) const {
-  constexpr double kSlack = 1.0 - 1e-5;  // the gaps are floats
   std::fill(sq_distances.begin(), sq_distances.end(), std::numeric_limits<double>::infinity());
   const Vec3 query = position_at(item);
-  const Box at = outward(query, query);
+  const Box at = {query, query};
   const auto add_run = [&](std::size_t run) {
     for (std::size_t i = kLeaf * run; i < std::min(count_, kLeaf * (run + 1)); ++i) {
       const Vec3 d = position_at(i) - query;
@@ -113,7 +101,7 @@ std::size_t BoxTree::nearest(std::size_t item, std::span<double> sq_distances,
     }
   };
   struct Branch {
-    float sq_gap;
+    double sq_gap;
     std::size_t row, box;
   };
   std::array<Branch, kFanOut * kMostRows> stack;  // the nearest of each family on top
@@ -122,8 +110,8 @@ std::size_t BoxTree::nearest(std::size_t item, std::span<double> sq_distances,
     const std::size_t first = depth, begin = family * kFanOut;
     for (std::size_t b = begin; b < std::min(begin + kFanOut, rows_[row].size()); ++b) {
       if (b == without) continue;
-      const float sq_gap = rows_[row][b].sq_gap(at);
-      if (sq_gap * kSlack >= sq_distances.back()) continue;
+      const double sq_gap = rows_[row][b].sq_gap(at);
+      if (sq_gap >= sq_distances.back()) continue;
       std::size_t place = depth++;
       for (; place > first && stack[place - 1].sq_gap < sq_gap; --place) {
         stack[place] = stack[place - 1];
@@ -137,7 +125,7 @@ std::size_t BoxTree::nearest(std::size_t item, std::span<double> sq_distances,
     push_family(row, own / kFanOut, own);
     while (depth > 0) {
       const Branch branch = stack[--depth];
-      if (branch.sq_gap * kSlack >= sq_distances.back()) continue;
+      if (branch.sq_gap >= sq_distances.back()) continue;
       if (branch.row == 0) add_run(branch.box);
       if (branch.row > 0) push_family(branch.row - 1, branch.box, kNone);
     }

@@ -17,7 +17,8 @@ bool BlockFrame::gather(const VoxelLevel& level, const TargetBox& box, const Vec
   origin_ = origin;
   reach_ = reach * t;
   runs_.clear();
-  level.boxes.runs_near(box.min, box.max, reach_, runs_);
+  constexpr double kSlack = 1.000005;  // the kernels measure in float
+  level.boxes.runs_near(box.min, box.max, kSlack * reach_, runs_);
   const std::size_t room = runs_.size() * spatial::BoxTree::kLeaf;
   if (room > most) {
     level_ = nullptr;

@@ -33,8 +33,8 @@ PyramidPlan::Level plan_level(std::span<const Voxel> finer, MergeCells cells, bo
   return {forecast.merged >= kWorthwhileMerge, cells.crowd};
 }
 
-void add_boxes(VoxelLevel& level, const Vec3& origin) {
-  level.boxes = spatial::BoxTree(level.voxels.size(), origin,
+void add_boxes(VoxelLevel& level) {
+  level.boxes = spatial::BoxTree(level.voxels.size(),
                                  [&](std::size_t i) { return level.voxels[i].position; });
 }
 
@@ -72,10 +72,9 @@ VoxelPyramid make_pyramid(std::span<const Vec3> positions, std::span<const Vec3>
   if (order.empty()) return pyramid;
   auto [min, max] = corners.front();
   for (const auto& [low, high] : corners) min = min.cwiseMin(low), max = max.cwiseMax(high);
-  pyramid.corner = min;
   pyramid.origin = whole ? Vec3(whole->corner * unit) : min;
   pyramid.side = whole ? whole->side * unit : (max - min).maxCoeff();
-  add_boxes(points, pyramid.corner);
+  add_boxes(points);
   return pyramid;
 }
 
@@ -100,7 +99,7 @@ void make_levels(VoxelPyramid& pyramid, std::span<const double> scales, const Le
       level.cell = cells.edge;
       level.voxels = merge_voxels(finer, cells);
       for (const Voxel& voxel : level.voxels) level.most_qq = std::max(level.most_qq, voxel.qq);
-      add_boxes(level, pyramid.corner);
+      add_boxes(level);
     }
     pyramid.plan.push_back(plan);
     pyramid.level_of.push_back(pyramid.levels.size() - 1);

@@ -40,7 +40,6 @@ struct VoxelLevel {
 struct VoxelPyramid {
   Vec3 origin = Vec3::Zero();         ///< the lower corner of the box of the cloud, or of the whole
   double side = 0.0;                  ///< its longest side
-  Vec3 corner = Vec3::Zero();         ///< of these points alone
   std::vector<VoxelLevel> levels;     ///< from fine to coarse; the first holds the points
   std::vector<std::size_t> level_of;  ///< the level that serves each scale
   std::vector<PyramidPlan::Level> plan;  ///< how each scale got its level
