@@ -9,6 +9,7 @@
 #include "workbench/shapes/solids/cad_parts.h"
 #include "workbench/shapes/solids/mesh_vertices.h"
 #include "workbench/shapes/solids/part_pieces.h"
+#include "workbench/shapes/surfaces/default_shapes.h"
 #include "workbench/shapes/surfaces/polyhedra.h"
 #include "workbench/shapes/surfaces/roofs.h"
 
@@ -196,6 +197,12 @@ TEST(TrueCurves, OfAShapeJoinWhatIsOneEdge) {
   const std::vector<Curve> arcs = of_kind(curves, CurveKind::kArc);
   ASSERT_EQ(arcs.size(), 1u);
   EXPECT_NEAR(lines::length_of(arcs[0]), std::numbers::pi, 1e-9);
+}
+
+TEST(TrueCurves, OfAConeDoNotHaveItsApex) {
+  const std::vector<Curve> curves = true_curves(cone_on_plate().edges);
+  EXPECT_EQ(curves.size(), 3u);
+  EXPECT_EQ(of_kind(curves, CurveKind::kCircle).size(), 3u);
 }
 
 TEST(TrueCurves, OfAChainOfChordsAreOneCurve) {

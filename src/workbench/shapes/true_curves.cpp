@@ -277,7 +277,9 @@ void drop_unseen(std::vector<lines::Curve>& curves, std::span<const Vec3> positi
 }
 
 std::vector<Curve> true_curves(std::span<const EdgeCurve> edges) {
-  return Chains(edges).take();
+  std::vector<Curve> curves = Chains(edges).take();
+  std::erase_if(curves, [](const Curve& curve) { return lines::length_of(curve) == 0.0; });
+  return curves;
 }
 
 }  // namespace pcednet::shapes

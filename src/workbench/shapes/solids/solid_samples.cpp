@@ -136,10 +136,6 @@ std::optional<BorderPoint> border_between(const Solid& solid, FacePoint a, FaceP
                                                                           : std::nullopt;
 }
 
-}  // namespace
-
-namespace {
-
 /// A border point per sample that has a neighbour on another face; `find` gives the neighbours,
 /// nearest first.
 template <typename Find>

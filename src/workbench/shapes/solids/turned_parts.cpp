@@ -8,7 +8,6 @@
 #include "workbench/shapes/solids/part_pieces.h"
 
 namespace pcednet::shapes {
-namespace {}  // namespace
 
 Solid shaft(Random& random) {
   const int steps = 2 + static_cast<int>(random.index(5));
