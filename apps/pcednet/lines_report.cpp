@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "common.h"
+#include "pcednet/core/counted.h"
 #include "pcednet/io/drawing/line_classes.h"
 #include "pcednet/io/text_scan.h"
 
@@ -120,8 +121,8 @@ void report_lines(const LinesArguments& arguments, const lines::LineScale& scale
                   std::span<const std::uint8_t> classes) {
   double length = 0.0;
   for (const Curve& curve : curves) length += length_of(curve);
-  say(fmt::format("{}: {} curve{}, total length {:.6g}{}", arguments.input, curves.size(),
-                  curves.size() == 1 ? "" : "s", length, left_out));
+  say(fmt::format("{}: {}, total length {:.6g}{}", arguments.input, counted(curves.size(), "curve"),
+                  length, left_out));
   for (const io::LineClass& entry : io::kLineClasses) {
     std::string kinds;
     double class_length = 0.0;
@@ -133,7 +134,7 @@ void report_lines(const LinesArguments& arguments, const lines::LineScale& scale
         class_length += length_of(curve);
       }
       if (count == 0) continue;
-      kinds += fmt::format("{} {}{}, ", count, name_of(kind), count == 1 ? "" : "s");
+      kinds += counted(count, name_of(kind)) + ", ";
     }
     if (!kinds.empty()) say(fmt::format("  {}: {}length {:.6g}", entry.name, kinds, class_length));
   }

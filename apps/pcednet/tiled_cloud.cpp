@@ -9,6 +9,7 @@
 #include "common.h"
 #include "descriptor_options.h"
 #include "memory_size.h"
+#include "pcednet/core/counted.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/parts.h"
 #include "pcednet/io/scanners.h"
@@ -156,9 +157,8 @@ TiledCloud::TiledCloud(TiledRequest request, const detect::EdgeModel& model,
       reader_(tiles::open_chunks(request_.input)) {
   reader_->set_narrow_colours(plan_.inputs.front().narrow_colours);
   if (request_.given && !plan_.normals.made) return;
-  const std::size_t tiles = plan_.tiles.size();
-  say(fmt::format("  {} tile{} of length {:g}, each with {:.4g} around it, of up to {}", tiles,
-                  tiles == 1 ? "" : "s", plan_.grid.length(), plan_.buffer,
+  say(fmt::format("  {} of length {:g}, each with {:.4g} around it, of up to {}",
+                  counted(plan_.tiles.size(), "tile"), plan_.grid.length(), plan_.buffer,
                   size_text(plan_.memory)));
   if (plan_.memory > request_.memory) {
     warn(fmt::format("that is more than {}: no tile is shorter than its buffer",

@@ -7,6 +7,7 @@
 #include "batch.h"
 #include "commands.h"
 #include "facts.h"
+#include "pcednet/core/counted.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/json.h"
 #include "pcednet/core/output_file.h"
@@ -119,8 +120,7 @@ void list_files(const InfoRequest& request, const Common& common) {
   }
   std::uint64_t points = 0;
   for (const formats::VirtualFile& file : files) points += file.points;
-  say(fmt::format("{}: {} file{}, {} points", request.vpc, files.size(),
-                  files.size() == 1 ? "" : "s", points));
+  say(fmt::format("{}: {}, {} points", request.vpc, counted(files.size(), "file"), points));
 }
 
 formats::CloudFacts facts_of(const std::filesystem::path& path, bool all,

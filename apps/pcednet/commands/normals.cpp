@@ -8,6 +8,7 @@
 #include "classify_cloud.h"
 #include "commands.h"
 #include "number_options.h"
+#include "pcednet/core/counted.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/points/prepare.h"
 #include "pcednet/formats/format.h"
@@ -61,8 +62,7 @@ void report(const NormalsRequest& request, const normals::PreparedNormals& prepa
                         normals::number_of(prepared.choice));
   }
   if (orientation.components > 0) {
-    line += fmt::format("; {} connected part{}", orientation.components,
-                        orientation.components == 1 ? "" : "s");
+    line += "; " + counted(orientation.components, "connected part");
     if (orientation.undecided > 0) {
       line += orientation.components == 1
                   ? ", open, turned upwards"

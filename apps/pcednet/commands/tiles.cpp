@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "memory_size.h"
 #include "models.h"
+#include "pcednet/core/counted.h"
 #include "pcednet/core/stopwatch.h"
 #include "pcednet/formats/format.h"
 #include "pcednet/formats/virtual_cloud.h"
@@ -85,7 +86,7 @@ void say_run(std::size_t all, std::size_t begun, std::size_t ran) {
   const auto done = [](std::size_t tiles) {
     return fmt::format("{} {} done", tiles, tiles == 1 ? "was" : "were");
   };
-  std::string line = fmt::format("{} tile{} run, {}", ran, ran == 1 ? "" : "s", done(all - begun));
+  std::string line = fmt::format("{} run, {}", counted(ran, "tile"), done(all - begun));
   if (ran < begun) line += fmt::format(", {} by another run meanwhile", done(begun - ran));
   say(line);
 }
@@ -176,8 +177,8 @@ void join_into_file(const tiles::Plan& plan, const std::string& output, const Co
   const Progress progress = console_progress(common);
   const tiles::Joined joined = tiles::join(plan, output, common.overwrite(), &progress);
   warn_of_losses(output, joined.losses);
-  say(fmt::format("{}: {} points of {} tile{}", output, joined.points, plan.tiles.size(),
-                  plan.tiles.size() == 1 ? "" : "s"));
+  say(fmt::format("{}: {} points of {}", output, joined.points,
+                  counted(plan.tiles.size(), "tile")));
 }
 
 /// Throws if the tiles are PLY, which a virtual point cloud cannot list.
@@ -197,8 +198,7 @@ void list_tiles(const tiles::Plan& plan, const std::string& vpc, const Common& c
   std::vector<formats::VirtualFile> files;
   for (const tiles::Tile& tile : plan.tiles) files.push_back(formats::virtual_file(tile.output));
   warn_all(vpc, formats::write_virtual_cloud(vpc, files, common.overwrite()));
-  say(fmt::format("{}: {} points of {} tile{}", vpc, plan.points(), files.size(),
-                  files.size() == 1 ? "" : "s"));
+  say(fmt::format("{}: {} points of {}", vpc, plan.points(), counted(files.size(), "tile")));
 }
 
 void join_tiles(const JoinArguments& arguments, const Common& common) {

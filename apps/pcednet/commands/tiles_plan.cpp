@@ -12,6 +12,7 @@
 #include "memory_size.h"
 #include "models.h"
 #include "number_options.h"
+#include "pcednet/core/counted.h"
 #include "pcednet/core/error.h"
 #include "pcednet/detect/result_cloud.h"
 #include "pcednet/tiles/inputs.h"
@@ -102,9 +103,9 @@ void plan_tiles(const PlanArguments& arguments, const Common& common) {
   for (const std::string& note : plan.notes) warn(note);
   warn_of_old_tiles(arguments);
   warn_of_replaced(arguments.inputs.front(), detect::replaced_attributes(tiles::outline_of(plan)));
-  say(fmt::format("{}: {} points in {} tile{} of length {:g}, buffer {:.4g}", arguments.plan,
-                  plan.points(), plan.tiles.size(), plan.tiles.size() == 1 ? "" : "s",
-                  plan.grid.length(), plan.buffer));
+  say(fmt::format("{}: {} points in {} of length {:g}, buffer {:.4g}", arguments.plan,
+                  plan.points(), counted(plan.tiles.size(), "tile"), plan.grid.length(),
+                  plan.buffer));
   say(fmt::format("  scales: {:.9g} to {:.9g}", plan.s_min, plan.s_max));
   say(fmt::format("  the largest tile takes about {} of memory", size_text(plan.memory)));
   if (plan.memory > request.memory) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "pcednet/core/counted.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/json.h"
 #include "pcednet/tiles/inputs.h"
@@ -61,8 +62,8 @@ std::string next_step(const tiles::Plan& plan, const Status& status) {
 }
 
 std::string status_text(const tiles::Plan& plan, const Status& status) {
-  std::string text = fmt::format("{}: {} points in {} tile{}\n", plan.path.string(), plan.points(),
-                                 plan.tiles.size(), plan.tiles.size() == 1 ? "" : "s");
+  std::string text = fmt::format("{}: {} points in {}\n", plan.path.string(), plan.points(),
+                                 counted(plan.tiles.size(), "tile"));
   for (const std::size_t state : {2, 0, 1}) {
     const Group& group = status.groups[state];
     text += fmt::format("  {:<8} {:>6} tiles, {:>12} points", kStates[state], group.ids.size(),

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "pcednet/cloud/point_cloud.h"
+#include "pcednet/core/counted.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/json.h"
 #include "pcednet/core/median.h"
@@ -217,8 +218,8 @@ std::string to_table(const ClassReport& report) {
                         scores_of(report.counts[id]), kClassColumns);
   }
   table += score_line("mean", std::to_string(report.points), mean_scores(report), kClassColumns);
-  return table + fmt::format("accuracy {:.3f}, {} cloud{}\n", share_of_right(report), report.clouds,
-                             report.clouds == 1 ? "" : "s");
+  return table + fmt::format("accuracy {:.3f}, {}\n", share_of_right(report),
+                             counted(report.clouds, "cloud"));
 }
 
 }  // namespace pcednet::eval

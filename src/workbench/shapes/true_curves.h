@@ -16,8 +16,8 @@ namespace pcednet::shapes {
 std::vector<lines::Curve> true_curves(const Solid& solid, std::span<const BorderPoint> borders);
 
 /// The edges of a shape as curves of their class. Those in one line, and chords that turn less than
-/// 15 degrees, become one curve if no other edge ends between them. An apex, an edge without length,
-/// is none.
+/// 15 degrees, become one curve if no other edge ends between them. An apex, an edge without
+/// length, is none.
 std::vector<lines::Curve> true_curves(std::span<const EdgeCurve> edges);
 
 /// The curves rotated about the origin.

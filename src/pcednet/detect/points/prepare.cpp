@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pcednet/cloud/bounding_box.h"
+#include "pcednet/core/counted.h"
 #include "pcednet/core/error.h"
 #include "pcednet/core/half_space.h"
 #include "pcednet/core/parallel_loops.h"
@@ -84,9 +85,8 @@ std::string how_oriented(const Oriented& oriented) {
                            : orientation.components == 1
                                ? ", open: upwards"
                                : fmt::format(", {} of them open: upwards", orientation.undecided);
-  std::string text =
-      fmt::format("oriented consistently ({} connected part{}{})", orientation.components,
-                  orientation.components == 1 ? "" : "s", open);
+  std::string text = fmt::format("oriented consistently ({}{})",
+                                 counted(orientation.components, "connected part"), open);
   if (oriented.faced > 0) {
     text += fmt::format("; {} of them turned towards their scanner", oriented.faced);
   }

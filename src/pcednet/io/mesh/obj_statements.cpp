@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstdint>
 
+#include "pcednet/core/counted.h"
 #include "pcednet/io/input_file.h"
 
 namespace pcednet::io {
@@ -43,8 +44,8 @@ double ObjStatements::number(std::size_t word) const {
 Vec3 ObjStatements::vertex() const {
   const std::size_t count = statement_.size() - 1;
   if (count != 3 && count != 4 && count != 6) {
-    throw error(fmt::format("v with {} number{}; expected x y z, x y z w or x y z r g b", count,
-                            count == 1 ? "" : "s"));
+    throw error(
+        fmt::format("v with {}; expected x y z, x y z w or x y z r g b", counted(count, "number")));
   }
   return {number(1), number(2), number(3)};
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "pcednet/core/counted.h"
 #include "pcednet/core/parallel.h"
 #include "pcednet/io/cloud_builder.h"
 #include "pcednet/io/pcd/header.h"
@@ -37,8 +38,7 @@ std::uint64_t read_ascii(const InputFile& file, const PcdHeader& header, CloudBu
     split(line, words);
     if (words.size() != numbers) {
       throw unreadable(file.path(),
-                       fmt::format("{} number{} instead of {}", words.size(),
-                                   words.size() == 1 ? "" : "s", numbers),
+                       fmt::format("{} instead of {}", counted(words.size(), "number"), numbers),
                        lines.number());
     }
     std::byte* number = feeder.next_row();

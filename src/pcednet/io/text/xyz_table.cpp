@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "pcednet/core/counted.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::io {
@@ -275,8 +276,8 @@ void TableReader::take_row(std::string_view line) {
   if (promised_ && take_count()) return;
   if (words_.size() == table_.columns() + 1 && words_.back().empty()) words_.pop_back();
   if (words_.size() != table_.columns()) {
-    throw error(fmt::format("{} number{} where the lines before have {}", words_.size(),
-                            words_.size() == 1 ? "" : "s", table_.columns()));
+    throw error(fmt::format("{} where the lines before have {}", counted(words_.size(), "number"),
+                            table_.columns()));
   }
   if (empty_words() == words_.size()) return;  // as spreadsheets end a table
   double* const row = table_.add_row();
