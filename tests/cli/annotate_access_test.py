@@ -264,8 +264,8 @@ half.rename({str(given)!r})
 
     def test_says_what_is_wrong_and_ends(self):
         self.assertIn("no such file", run("annotate", self.folder / "none.ply", expect=3).stderr)
-        self.assertIn("is a folder; give point files",
-                      run("annotate", self.folder, "--no-browser", expect=3).stderr)
+        self.assertIn("is a folder; give its files one by one",
+                      run("annotate", self.folder, "--no-browser", expect=2).stderr)
         (self.folder / "bad.ply").write_text("ply\nrubbish\n")
         for _ in range(20):  # told to stop while its server is still starting
             run("annotate", self.folder / "bad.ply", "--no-browser", expect=3)

@@ -95,11 +95,11 @@ void add_starts(annotate::SessionOptions& options, const AnnotateArguments& argu
 
 fs::path sound_input(const std::string& given) {
   std::error_code ignored;
+  if (fs::is_directory(given, ignored)) {
+    throw Error(ErrorKind::kUsage, given + ": is a folder; give its files one by one");
+  }
   if (!fs::is_regular_file(given, ignored)) {
-    throw Error(ErrorKind::kUnreadable,
-                fmt::format("{}: {}", given,
-                            fs::is_directory(given, ignored) ? "is a folder; give point files"
-                                                             : "no such file"));
+    throw Error(ErrorKind::kUnreadable, given + ": no such file");
   }
   return fs::absolute(given);
 }
