@@ -194,7 +194,7 @@ class Outputs(CliTest):
                 (2, "city.vpc: names other files; convert takes one cloud", "convert", "city.vpc", "-o", "x.laz"),
                 (2, f"{folder}: is a folder; normals takes one cloud", "normals", folder, "-o", self.folder / "x.ply"),
                 (2, f"{folder}: is a folder; describe takes one cloud", "describe", folder, "-o", self.folder / "x.npy"),
-                (3, f"{folder}: is a folder", "annotate", folder, "--no-browser"),
+                (2, f"{folder}: is a folder; give its files one by one", "annotate", folder, "--no-browser"),
                 (2, f"{folder}: is a folder; lines takes one cloud", "lines", folder, "-o", self.folder / "x.obj"),
                 (2, "city.vpc: names other files; lines takes one cloud: give its files one by one, or make one of "
                     "them with pcednet tiles plan, run and join", "lines", "city.vpc", "-o", "x.obj"),
