@@ -6,6 +6,7 @@
 #include <map>
 
 #include "gls/test_clouds.h"
+#include "pcednet/core/random.h"
 #include "pcednet/gls/oriented_points.h"
 
 namespace pcednet::gls {
@@ -122,6 +123,25 @@ TEST(VoxelPyramid, KeepsCellsApartThatAreTooManyForTheKeys) {
   const VoxelPyramid pyramid = pyramid_of(cloud, {5.0});
   ASSERT_EQ(pyramid.levels.size(), 2u);
   for (const Voxel& v : pyramid.levels[1].voxels) EXPECT_LT(v.qq, 1.0f);
+}
+
+TEST(VoxelPyramid, FollowsTheCurveWhereCellsAreTooManyForTheKeys) {
+  // Clumps 2^20 cells apart, whose cells have the same keys: each is one stretch of the level.
+  constexpr double kFar = 10.0 * 0x1p20;
+  test::Cloud cloud;
+  Random random(7);
+  for (int i = 0; i < 4000; ++i) {
+    const double x = 50.0 * random.uniform();
+    const double y = 50.0 * random.uniform();
+    cloud.add(Vec3(x + (i % 2 ? kFar : 0.0), y, 0), Vec3::UnitZ());
+  }
+  const VoxelPyramid pyramid = pyramid_of(cloud, {50.0});
+  ASSERT_EQ(pyramid.levels.size(), 2u);
+  int changes = 0;
+  const auto& voxels = pyramid.levels[1].voxels;
+  const auto is_far = [&](std::size_t i) { return voxels[i].position.x() > 0.5 * kFar; };
+  for (std::size_t i = 1; i < voxels.size(); ++i) changes += is_far(i) != is_far(i - 1);
+  EXPECT_EQ(changes, 1);
 }
 
 TEST(VoxelPyramid, LeavesOutPointsWithoutNormal) {

@@ -1,14 +1,13 @@
 #include "pcednet/gls/engine/voxel_merge.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <limits>
 
 #include "pcednet/core/parallel.h"
+#include "pcednet/core/parallel_loops.h"
 #include "pcednet/core/prefetch.h"
 #include "pcednet/gls/engine/normal_spread.h"
-#include "pcednet/spatial/morton.h"
+#include "pcednet/gls/engine/voxel_grid.h"
 #include "pcednet/spatial/radix_sort.h"
 
 namespace pcednet::gls {
@@ -16,10 +15,6 @@ namespace {
 
 using spatial::Keyed;
 
-// Bits of a key below the place of a cell, and of cubes of 4 and 8 cells a side.
-constexpr int kAxisBits = 2, kGatedBits = kAxisBits + 6, kBlockBits = kAxisBits + 9;
-// A block is this many cells a side, and where it is merged further, this many voxels.
-constexpr std::uint64_t kBlockCells = 8, kBlockVoxels = 3;
 // filling() from which a block is merged further: 18 cells with normals of every direction.
 constexpr double kFillsSpace = 4.0;
 constexpr std::size_t kFewestToFill = 18;
@@ -57,84 +52,12 @@ struct VoxelSums {
   }
 };
 
-std::size_t dominant_axis(const std::array<float, 3>& n) {
-  const float x = std::abs(n[0]), y = std::abs(n[1]), z = std::abs(n[2]);
-  return x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
-}
-
-/// The cells of a level. Keys distinguish 2^20 cells along an axis; where there are more (points
-/// far from all others), cells with equal keys are compared themselves.
-class Grid {
- public:
-  Grid(std::span<const Voxel> voxels, const MergeCells& cells)
-      : voxels_(voxels),
-        origin_(cells.origin),
-        inverse_edge_(1.0 / cells.edge),
-        cells_along_(cells.side * inverse_edge_ + 1.0) {}
-
-  /// The cell's place on the curve, then the axis of the normal.
-  std::uint64_t key(std::size_t i) const {
-    const std::array<std::uint64_t, 3> cell = cell_of(i);
-    const auto wrapped = [&](std::size_t a) { return static_cast<std::uint32_t>(cell[a] & kMost); };
-    const std::uint64_t place = spatial::morton_code({wrapped(0), wrapped(1), wrapped(2)});
-    return place << kAxisBits | dominant_axis(voxels_[i].normal);
-  }
-
-  /// The voxel within its block, if that is merged further.
-  std::size_t place_in_block(std::size_t i) const {
-    constexpr double kPerCell = static_cast<double>(kBlockVoxels) / kBlockCells;
-    std::size_t place = 0;
-    for (const double c : place_of(i)) {
-      const double offset = c - std::floor(c / kBlockCells) * kBlockCells;
-      place = place * kBlockVoxels + static_cast<std::size_t>(offset * kPerCell);
-    }
-    return place;
-  }
-
-  int key_bits() const {
-    return kAxisBits + 3 * std::bit_width(static_cast<std::uint64_t>(
-                               std::min(cells_along_, static_cast<double>(kMost))));
-  }
-
-  /// True if the keys of two voxels differ in their lowest `bits` bits only, and their cells
-  /// accordingly.
-  bool are_together(const Keyed& i, const Keyed& j, int bits) const {
-    if (i.key >> bits != j.key >> bits) return false;
-    if (cells_along_ < static_cast<double>(kMost)) return true;
-    const std::array<std::uint64_t, 3> a = cell_of(i.index), b = cell_of(j.index);
-    const int shift = (bits - kAxisBits) / 3;
-    return a[0] >> shift == b[0] >> shift && a[1] >> shift == b[1] >> shift &&
-           a[2] >> shift == b[2] >> shift;
-  }
-
- private:
-  static constexpr std::uint64_t kMost = (1 << 20) - 1;
-
-  /// In units of the edge.
-  std::array<double, 3> place_of(std::size_t i) const {
-    const Vec3 place = (voxels_[i].position - origin_) * inverse_edge_;
-    const auto within = [](double c) { return std::clamp(c, 0.0, 0x1p62); };
-    return {within(place.x()), within(place.y()), within(place.z())};
-  }
-
-  std::array<std::uint64_t, 3> cell_of(std::size_t i) const {
-    const std::array<double, 3> place = place_of(i);
-    std::array<std::uint64_t, 3> cell;
-    for (std::size_t a = 0; a < 3; ++a) cell[a] = static_cast<std::uint64_t>(place[a]);
-    return cell;
-  }
-
-  std::span<const Voxel> voxels_;
-  Vec3 origin_;
-  double inverse_edge_, cells_along_;
-};
-
 /// Assigns each member of a block to a voxel, numbered along the curve. For two signs in one place,
 /// that of the first member comes first, so that a flip of all normals changes only the signs.
 /// Members without a normal are ignored.
 class BlockPlan {
  public:
-  BlockPlan(std::span<const Voxel> from, const Grid& grid, Crowd crowd)
+  BlockPlan(std::span<const Voxel> from, const VoxelGrid& grid, Crowd crowd)
       : from_(from), grid_(&grid), crowd_(crowd) {}
 
   /// The voxel of each of `members`, sorted by key.
@@ -216,12 +139,30 @@ class BlockPlan {
   }
 
   std::span<const Voxel> from_;
-  const Grid* grid_;
+  const VoxelGrid* grid_;
   Crowd crowd_;
   std::span<const Keyed> members_;
   std::vector<std::uint32_t> voxel_of_;
   std::uint32_t count_ = 0;
 };
+
+/// The voxels with their keys, along the curve: by cube, and by key within.
+UnsetArray<Keyed> along_curve(std::span<const Voxel> from, const VoxelGrid& grid) {
+  UnsetArray<Keyed> keyed(from.size());
+  const auto set_keys = [&](const auto& key_of) {
+    parallel_for_each(keyed.size(), [&](std::size_t i) { keyed[i].key = key_of(keyed[i].index); });
+  };
+  parallel_for_each(keyed.size(), [&](std::size_t i) {
+    keyed[i] = {grid.key(i), static_cast<std::uint32_t>(i)};
+  });
+  spatial::sort_by_key(keyed, grid.key_bits());
+  if (grid.has_cubes()) {
+    set_keys([&](std::uint32_t i) { return grid.cube(i); });
+    spatial::sort_by_key(keyed, 63);
+    set_keys([&](std::uint32_t i) { return grid.key(i); });
+  }
+  return keyed;
+}
 
 /// Asks for the voxel of a later member.
 void ask_ahead(std::span<const Voxel> from, std::span<const Keyed> keyed, std::size_t i) {
@@ -230,7 +171,7 @@ void ask_ahead(std::span<const Voxel> from, std::span<const Keyed> keyed, std::s
 
 /// Calls `use(members, voxel_of, plan)` for every block of `keyed`, which begins and ends with one.
 template <typename Use>
-void for_blocks(std::span<const Voxel> from, const Grid& grid, Crowd crowd,
+void for_blocks(std::span<const Voxel> from, const VoxelGrid& grid, Crowd crowd,
                 std::span<const Keyed> keyed, Use&& use) {
   BlockPlan plan(from, grid, crowd);
   for (std::size_t begin = 0, end; begin < keyed.size(); begin = end) {
@@ -247,7 +188,7 @@ void for_blocks(std::span<const Voxel> from, const Grid& grid, Crowd crowd,
 
 /// Where the stretches begin that threads merge by themselves, and the end: every `length` members,
 /// or where the next block does.
-std::vector<std::size_t> stretches_of(std::span<const Keyed> keyed, const Grid& grid,
+std::vector<std::size_t> stretches_of(std::span<const Keyed> keyed, const VoxelGrid& grid,
                                       std::size_t length) {
   std::vector<std::size_t> starts((keyed.size() + length - 1) / length + 1, keyed.size());
   for (std::size_t s = starts.size() - 1; s-- > 0;) {
@@ -273,7 +214,7 @@ struct StretchPlan {
 
 /// Plans the blocks of `keyed`, where the number of each member's voxel in its block replaces the
 /// key.
-StretchPlan plan_stretch(std::span<const Voxel> from, const Grid& grid, Crowd crowd,
+StretchPlan plan_stretch(std::span<const Voxel> from, const VoxelGrid& grid, Crowd crowd,
                          std::span<Keyed> keyed) {
   StretchPlan stretch;
   auto next = keyed.begin();
@@ -309,7 +250,7 @@ struct ForecastSums {
 };
 
 /// The forecast for the points of the voxels [begin, end), as if there were no others.
-ForecastSums forecast_stretch(std::span<const Voxel> from, const Grid& grid, Crowd crowd,
+ForecastSums forecast_stretch(std::span<const Voxel> from, const VoxelGrid& grid, Crowd crowd,
                               std::size_t begin, std::size_t end) {
   std::vector<Keyed> keyed;
   keyed.reserve(end - begin);
@@ -344,15 +285,8 @@ ForecastSums forecast_stretch(std::span<const Voxel> from, const Grid& grid, Cro
 
 UnsetArray<Voxel> merge_voxels(std::span<const Voxel> from, const MergeCells& cells) {
   constexpr std::size_t kStretch = 1 << 14;
-  const Grid grid(from, cells);
-  UnsetArray<Keyed> keyed(from.size());
-  parallel_blocks(from.size(), kStretch, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      keyed[i] = {grid.key(i), static_cast<std::uint32_t>(i)};
-    }
-  });
-  spatial::sort_by_key(keyed, grid.key_bits());
-
+  const VoxelGrid grid(from, cells);
+  UnsetArray<Keyed> keyed = along_curve(from, grid);
   const std::vector<std::size_t> starts = stretches_of(keyed, grid, kStretch);
   const auto members = [&](std::size_t s) {
     return std::span<Keyed>(keyed).subspan(starts[s], starts[s + 1] - starts[s]);
@@ -371,12 +305,14 @@ UnsetArray<Voxel> merge_voxels(std::span<const Voxel> from, const MergeCells& ce
 }
 
 MergeForecast forecast_merge(std::span<const Voxel> from, const MergeCells& cells) {
-  constexpr std::size_t kStretch = 1 << 14, kStep = 16 * kStretch;
-  const Grid grid(from, cells);
-  std::vector<ForecastSums> stretches((from.size() + kStep - 1) / kStep);
-  parallel_blocks(from.size(), kStep, [&](std::size_t begin, std::size_t end) {
+  constexpr std::size_t kStretch = 1 << 14;
+  const VoxelGrid grid(from, cells);
+  // Clumps far from each other may differ.
+  const std::size_t step = grid.has_cubes() ? kStretch : 16 * kStretch;
+  std::vector<ForecastSums> stretches((from.size() + step - 1) / step);
+  parallel_blocks(from.size(), step, [&](std::size_t begin, std::size_t end) {
     const std::size_t last = std::min(end, begin + kStretch);
-    stretches[begin / kStep] = forecast_stretch(from, grid, cells.crowd, begin, last);
+    stretches[begin / step] = forecast_stretch(from, grid, cells.crowd, begin, last);
   });
   ForecastSums sums;
   for (const ForecastSums& stretch : stretches) {

@@ -20,7 +20,7 @@ struct MergeCells {
 UnsetArray<Voxel> merge_voxels(std::span<const Voxel> from, const MergeCells& cells);
 
 /// The effect of merge_voxels() on the average point, estimated from every sixteenth range of the
-/// curve.
+/// curve; from all ranges where there are more than 2^20 cells along an axis.
 struct MergeForecast {
   double merged = 1.0;  ///< voxels of `from` in its merged voxel; 1 if nothing would merge
   /// With Crowd::kKeep: occupied cells of its block times NormalSpread::mean_sq_volume(), at most 6
