@@ -20,7 +20,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <limits>
 #include <list>
@@ -31,6 +30,7 @@
 #include <thread>
 
 #include "pcednet/core/error.h"
+#include "pcednet/io/column_names.h"
 #include "pcednet/io/text_scan.h"
 
 namespace pcednet::app {
@@ -55,19 +55,9 @@ constexpr seconds kSilentTime{3};    // for a window whose stream has ended to o
 
 /// Resolves escapes such as %41, and + to a space.
 std::string decoded(std::string_view text) {
-  std::string result;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    unsigned char byte = 0;
-    if (const char* digits = text.data() + i + 1;
-        text[i] == '%' && i + 2 < text.size() &&
-        std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2) {
-      result += static_cast<char>(byte);
-      i += 2;
-    } else {
-      result += text[i] == '+' ? ' ' : text[i];
-    }
-  }
-  return result;
+  std::string spaced(text);
+  std::replace(spaced.begin(), spaced.end(), '+', ' ');
+  return io::percent_decoded(spaced);
 }
 
 std::string_view view_of(beast::string_view text) {

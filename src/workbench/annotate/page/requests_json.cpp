@@ -37,17 +37,21 @@ Vec3 vector(const Json& value, const char* what) {
   return {v[0], v[1], v[2]};
 }
 
+/// -1 if it is none. Json::get() alone would cut off fractions, and higher bits.
+std::int64_t whole_number(const Json& value) {
+  return value.is_number_integer() ? value.get<std::int64_t>() : -1;
+}
+
 std::uint8_t edge_class(const Json& value) {
-  const auto c = value.is_number_integer() ? value.get<std::int64_t>() : -1;
+  const std::int64_t c = whole_number(value);
   need((c >= 0 && c < static_cast<std::int64_t>(kMostClasses)) || c == kUnlabelled,
        "a class is 0 to 7, or 255");
   return static_cast<std::uint8_t>(c);
 }
 
-/// Whole numbers as they are: Json::get() would cut off fractions, and higher bits.
 template <typename Whole>
 Whole whole(const Json& value, const char* what) {
-  const auto number = value.is_number_integer() ? value.get<std::int64_t>() : -1;
+  const std::int64_t number = whole_number(value);
   if (number < 0 || number > std::numeric_limits<Whole>::max()) {
     throw Error(ErrorKind::kUsage, fmt::format("decide: {}", what));
   }
