@@ -57,13 +57,15 @@ std::string note_on_given(const PreparedCloud& cloud, const gls::ScaleRange& giv
 /// Holds a scale space only while needed.
 Classification describe_and_decide(const PreparedCloud& cloud, const EdgeModel& model,
                                    const Progress* progress) {
-  Classification found = nothing_found(cloud.positions.size(), has_own_classes(model.table));
+  Classification found;
   const std::size_t width = row_width(model.descriptor);
   std::vector<float> rows(std::min(kBlock, cloud.curve.size()) * width);
   const Progress cancel_only = without_report(progress);
   std::optional<Stage> stage;
   for_each_octave(cloud, model.descriptor, progress, [&](const auto& space, const auto& points) {
     if (!stage) {
+      // Not before: the memory is needed most while a space is made.
+      found = nothing_found(cloud.positions.size(), has_own_classes(model.table));
       stage.emplace(progress, "describe", cloud.curve.size());
       found.s_min = space.scales().front();
       found.note = gls::note_on(model.descriptor, space.scales(), cloud.positions);

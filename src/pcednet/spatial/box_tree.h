@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
 
-#include "pcednet/core/parallel.h"
 #include "pcednet/core/vec3.h"
 
 namespace pcednet::spatial {
 
 /// A tree of boxes over items along a space-filling curve. Runs of items are compact, so the tree
-/// consists of the boxes of runs, and of runs of runs.
+/// consists of the boxes of runs, and of runs of runs. It takes four bytes per item.
 class BoxTree {
  public:
   static constexpr std::size_t kLeaf = 8;    ///< items per box of the lowest row
@@ -44,12 +44,23 @@ class BoxTree {
     void grow(const Box& box);
     double sq_gap(const Box& box) const;
   };
+  /// The box of a run, or a little more, from the lower corner of the box of its family.
+  struct RunBox {
+    std::array<float, 3> min, max;
+  };
   static constexpr std::size_t kMostRows = 21;  ///< 8^21 items
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-  void add_rows();
+  void make(const std::function<Box(std::size_t)>& box_of_run);
+  static RunBox within(const Box& family, const Box& run);
+  Box box(std::size_t row, std::size_t i) const;
+  std::size_t boxes(std::size_t row) const {
+    return row == 0 ? runs_.size() : rows_[row - 1].size();
+  }
+  std::size_t row_count() const { return 1 + rows_.size(); }
 
   std::size_t count_ = 0;
-  std::vector<std::vector<Box>> rows_;  ///< from the runs up
+  std::vector<RunBox> runs_;            ///< the lowest row
+  std::vector<std::vector<Box>> rows_;  ///< those above: families of runs, families of these
 };
 
 inline void BoxTree::Box::grow(const Box& box) {
@@ -66,22 +77,25 @@ inline double BoxTree::Box::sq_gap(const Box& box) const {
   return sum;
 }
 
+inline BoxTree::Box BoxTree::box(std::size_t row, std::size_t i) const {
+  if (row > 0) return rows_[row - 1][i];
+  const Vec3& corner = rows_.front()[i / kFanOut].min;
+  const RunBox& run = runs_[i];
+  return {corner + Eigen::Map<const Eigen::Vector3f>(run.min.data()).cast<double>(),
+          corner + Eigen::Map<const Eigen::Vector3f>(run.max.data()).cast<double>()};
+}
+
 template <typename PositionAt>
 BoxTree::BoxTree(std::size_t count, PositionAt&& position_at) : count_(count) {
-  std::vector<Box> row((count + kLeaf - 1) / kLeaf);
-  parallel_blocks(row.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t run = begin; run < end; ++run) {
-      Vec3 min = position_at(kLeaf * run), max = min;
-      for (std::size_t i = kLeaf * run + 1; i < std::min(count, kLeaf * (run + 1)); ++i) {
-        const Vec3 position = position_at(i);
-        min = min.cwiseMin(position);
-        max = max.cwiseMax(position);
-      }
-      row[run] = {min, max};
+  make([&](std::size_t run) {
+    Vec3 min = position_at(kLeaf * run), max = min;
+    for (std::size_t i = kLeaf * run + 1; i < std::min(count, kLeaf * (run + 1)); ++i) {
+      const Vec3 position = position_at(i);
+      min = min.cwiseMin(position);
+      max = max.cwiseMax(position);
     }
+    return Box{min, max};
   });
-  rows_.push_back(std::move(row));
-  add_rows();
 }
 
 template <typename PositionAt>
@@ -108,9 +122,9 @@ std::size_t BoxTree::nearest(std::size_t item, std::span<double> sq_distances,
   std::size_t depth = 0;
   const auto push_family = [&](std::size_t row, std::size_t family, std::size_t without) {
     const std::size_t first = depth, begin = family * kFanOut;
-    for (std::size_t b = begin; b < std::min(begin + kFanOut, rows_[row].size()); ++b) {
+    for (std::size_t b = begin; b < std::min(begin + kFanOut, boxes(row)); ++b) {
       if (b == without) continue;
-      const double sq_gap = rows_[row][b].sq_gap(at);
+      const double sq_gap = box(row, b).sq_gap(at);
       if (sq_gap >= sq_distances.back()) continue;
       std::size_t place = depth++;
       for (; place > first && stack[place - 1].sq_gap < sq_gap; --place) {
@@ -121,7 +135,7 @@ std::size_t BoxTree::nearest(std::size_t item, std::span<double> sq_distances,
   };
   std::size_t own = item / kLeaf;
   add_run(own);
-  for (std::size_t row = 0; row < rows_.size(); ++row, own /= kFanOut) {
+  for (std::size_t row = 0; row < row_count(); ++row, own /= kFanOut) {
     push_family(row, own / kFanOut, own);
     while (depth > 0) {
       const Branch branch = stack[--depth];

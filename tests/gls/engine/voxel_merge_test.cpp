@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <functional>
 
+#include "gls/engine/listed_voxels.h"
 #include "gls/test_clouds.h"
 #include "pcednet/gls/engine/normal_spread.h"
 #include "pcednet/gls/oriented_points.h"
@@ -23,7 +24,7 @@ test::Cloud noise(std::size_t count) {
   return cloud;
 }
 
-UnsetArray<Voxel> points_of(const test::Cloud& cloud) {
+VoxelArray points_of(const test::Cloud& cloud) {
   const auto order = point_order(cloud.points()).order;
   VoxelPyramid pyramid = make_pyramid(cloud.positions, cloud.normals, order, 1.0);
   return std::move(pyramid.levels.front().voxels);
@@ -65,23 +66,23 @@ TEST(NormalSpread, TellsSurfacesAndEdgesFromNoise) {
 }
 
 TEST(VoxelMerge, KeepsFarFewerVoxelsOfNoiseWhereItIsCrowded) {
-  const UnsetArray<Voxel> points = points_of(noise(100000));
+  const VoxelArray points = points_of(noise(100000));
   MergeCells cells = {.origin = Vec3::Zero(), .side = 1.0, .edge = 0.02, .crowd = Crowd::kKeep};
   const std::size_t kept = merge_voxels(points, cells).size();
   EXPECT_GT(forecast_merge(points, cells).filling, 20.0);
   cells.crowd = Crowd::kMerge;
-  const UnsetArray<Voxel> merged = merge_voxels(points, cells);
+  const VoxelArray merged = merge_voxels(points, cells);
   EXPECT_LE(merged.size(), 20u * 19 * 19);  // cubes of 0.16 / 3, and cells of blocks at the rim
   EXPECT_LT(merged.size(), kept / 9);
   cells.crowd = Crowd::kMergeByAxis;
-  const UnsetArray<Voxel> by_axis = merge_voxels(points, cells);
+  const VoxelArray by_axis = merge_voxels(points, cells);
   EXPECT_LE(by_axis.size(), 6u * 13 * 13 * 14);  // cubes of 0.08, axes, signs
-  for (const std::span<const Voxel> voxels : {std::span(merged), std::span(by_axis)}) {
+  for (const VoxelSpan voxels : {VoxelSpan(merged), VoxelSpan(by_axis)}) {
     double count = 0.0;
-    for (const Voxel& voxel : voxels) count += voxel.count;
+    for (const Voxel& voxel : listed(voxels)) count += voxel.count;
     EXPECT_EQ(count, 100000.0);
   }
-  for (const Voxel& voxel : by_axis) {  // a gate sees directions: means of a sixth of all
+  for (const Voxel& voxel : listed(by_axis)) {  // a gate sees directions: means of a sixth of all
     EXPECT_GT(Vec3(voxel.normal[0], voxel.normal[1], voxel.normal[2]).norm(), 0.5);
   }
 }
@@ -92,7 +93,7 @@ TEST(VoxelMerge, LeavesSurfacesAloneWhereverItIsCrowded) {
   for (Vec3& p : thin.positions) p.z() *= 0.02;
   for (const test::Cloud& cloud :
        {test::scene(40000, 55), test::cube(40000, 56, 0.003, 0.1), thin}) {
-    const UnsetArray<Voxel> points = points_of(cloud);
+    const VoxelArray points = points_of(cloud);
     MergeCells cells = {.origin = Vec3(-2, -2, -2), .side = 6, .edge = 0.02, .crowd = Crowd::kKeep};
     EXPECT_LT(forecast_merge(points, cells).filling, 4.0);
     const std::size_t kept = merge_voxels(points, cells).size();
@@ -112,7 +113,7 @@ TEST(VoxelPyramid, HoldsFewVoxelsPerNeighbourhoodOfNoiseAsOfASurface) {
     for (std::size_t s = 0; s < scales.size(); ++s) {
       const VoxelLevel& level = pyramid.levels[pyramid.level_of[s]];
       std::size_t near = 0;
-      for (const Voxel& voxel : level.voxels) {
+      for (const Voxel& voxel : listed(level.voxels)) {
         near += (voxel.position - Vec3(0.5, 0.5, 0.5)).norm() < scales[s];
       }
       // 314 of a plane, thousands of points here

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "gls/engine/listed_voxels.h"
 #include "gls/test_clouds.h"
 #include "pcednet/core/random.h"
 #include "pcednet/gls/oriented_points.h"
@@ -17,8 +18,8 @@ struct Totals {
   double count = 0.0, pp = 0.0, pn = 0.0;
   Vec3 p = Vec3::Zero(), n = Vec3::Zero();
 
-  explicit Totals(std::span<const Voxel> voxels, const Vec3& place) {
-    for (const Voxel& v : voxels) {
+  explicit Totals(VoxelSpan voxels, const Vec3& place) {
+    for (const Voxel& v : listed(voxels)) {
       const Vec3 y = v.position - place, normal(v.normal[0], v.normal[1], v.normal[2]);
       count += v.count;
       p += v.count * y;
@@ -63,7 +64,7 @@ TEST(VoxelPyramid, MergesWithinACellAndAnAxisOnly) {
   for (std::size_t l = 1; l < pyramid.levels.size(); ++l) {
     const VoxelLevel& level = pyramid.levels[l];
     std::map<std::array<int, 4>, int> seen;
-    for (const Voxel& v : level.voxels) {
+    for (const Voxel& v : listed(level.voxels)) {
       EXPECT_LE(v.qq, 3 * level.cell * level.cell);
       const Vec3 cell = ((v.position - pyramid.origin) / level.cell).array().floor();
       int axis = 0;
@@ -104,7 +105,7 @@ TEST(VoxelPyramid, FlipsWithTheNormals) {
   for (std::size_t l = 0; l < before.levels.size(); ++l) {
     ASSERT_EQ(before.levels[l].voxels.size(), after.levels[l].voxels.size());
     for (std::size_t i = 0; i < before.levels[l].voxels.size(); ++i) {
-      const Voxel &a = before.levels[l].voxels[i], &b = after.levels[l].voxels[i];
+      const Voxel a = before.levels[l].voxels[i], b = after.levels[l].voxels[i];
       ASSERT_EQ(a.position, b.position);
       ASSERT_EQ(a.qq, b.qq);
       ASSERT_EQ(a.qn, -b.qn);
@@ -122,7 +123,7 @@ TEST(VoxelPyramid, KeepsCellsApartThatAreTooManyForTheKeys) {
   }
   const VoxelPyramid pyramid = pyramid_of(cloud, {5.0});
   ASSERT_EQ(pyramid.levels.size(), 2u);
-  for (const Voxel& v : pyramid.levels[1].voxels) EXPECT_LT(v.qq, 1.0f);
+  for (const Voxel& v : listed(pyramid.levels[1].voxels)) EXPECT_LT(v.qq, 1.0f);
 }
 
 TEST(VoxelPyramid, FollowsTheCurveWhereCellsAreTooManyForTheKeys) {
@@ -150,7 +151,7 @@ TEST(VoxelPyramid, LeavesOutPointsWithoutNormal) {
   const VoxelPyramid pyramid = pyramid_of(cloud, kScales);
   for (const VoxelLevel& level : pyramid.levels) {
     double count = 0;
-    for (const Voxel& v : level.voxels) count += v.count;
+    for (const Voxel& v : listed(level.voxels)) count += v.count;
     EXPECT_EQ(count, 2000);
   }
 }
@@ -174,7 +175,7 @@ TEST(VoxelPyramid, OfAPartHasTheVoxelsOfTheWholeAwayFromItsRim) {
     const double inside = -0.1 + 10.0 * whole.levels[l].cell;
     std::map<Key, float> expected, found;
     const auto list = [&](const VoxelLevel& level, std::map<Key, float>& to) {
-      for (const Voxel& v : level.voxels) {
+      for (const Voxel& v : listed(level.voxels)) {
         const Vec3& p = v.position;
         // To float: sums in another order.
         const Key key = {static_cast<float>(p.x()), static_cast<float>(p.y()),

@@ -41,16 +41,16 @@ void keep_open(Part& part, const Source* sources, const NormalBox& normals, floa
 
 }  // namespace
 
-void GroupBoxes::cover(std::span<const Voxel> points, std::size_t begin, std::size_t end) {
+void GroupBoxes::cover(VoxelSpan points, std::size_t begin, std::size_t end) {
   if (begin >= begin_ && end <= end_) return;
   points_ = points, begin_ = begin, end_ = end;
   boxes_.clear(), normals_.clear();
   for (std::size_t first = begin; first < end; first += kLanes) {
-    TargetBox box = {points[first].position, points[first].position};
-    Normals normals = {points[first].normal, points[first].normal};
+    TargetBox box = {points.position(first), points.position(first)};
+    Normals normals = {points.normal(first), points.normal(first)};
     for (std::size_t i = first + 1; i < std::min(first + kLanes, end); ++i) {
-      box.grow(points[i].position);
-      normals.grow({points[i].normal, points[i].normal});
+      box.grow(points.position(i));
+      normals.grow({points.normal(i), points.normal(i)});
     }
     boxes_.push_back(box), normals_.push_back(normals);
   }
@@ -64,14 +64,14 @@ void GroupBoxes::Normals::grow(const Normals& other) {
 }
 
 TargetBox GroupBoxes::box_of(std::size_t begin, std::size_t end) const {
-  TargetBox box = {points_[begin].position, points_[begin].position};
+  TargetBox box = {points_.position(begin), points_.position(begin)};
   const bool groups = begin % kLanes == 0 && (end % kLanes == 0 || end == end_);
   for (std::size_t i = begin; i < end; i += groups ? kLanes : 1) {
     if (groups) {
       const TargetBox& group = boxes_[(i - begin_) / kLanes];
       box.grow(group.min), box.grow(group.max);
     } else {
-      box.grow(points_[i].position);
+      box.grow(points_.position(i));
     }
   }
   return box;

@@ -56,7 +56,7 @@ struct Sources {
 class GroupBoxes {
  public:
   /// Computes the boxes for the points [begin, end) unless they are known; `begin` starts a group.
-  void cover(std::span<const Voxel> points, std::size_t begin, std::size_t end);
+  void cover(VoxelSpan points, std::size_t begin, std::size_t end);
 
   /// The box of the points [begin, end), which must be covered.
   TargetBox box_of(std::size_t begin, std::size_t end) const;
@@ -71,7 +71,7 @@ class GroupBoxes {
     void grow(const Normals& other);
   };
 
-  std::span<const Voxel> points_;
+  VoxelSpan points_;
   std::size_t begin_ = 0, end_ = 0;
   std::vector<TargetBox> boxes_;
   std::vector<Normals> normals_;

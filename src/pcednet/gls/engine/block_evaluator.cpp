@@ -81,7 +81,7 @@ NormalBox BlockEvaluator::normals_of(std::size_t begin, std::size_t end, const V
 
 void BlockEvaluator::visit_group(const LaneGroup& group, const Sources& sources,
                                  const Visit& visit) {
-  const std::span<const Voxel> points = pyramid_->levels.front().voxels;
+  const VoxelSpan points = pyramid_->levels.front().voxels;
   const std::size_t end = group.begin + group.count;
   const Group here = place(points.subspan(group.begin, group.count), block_.frame,
                            local_box(block_.frame, boxes_.box_of(group.begin, end)),

@@ -28,16 +28,17 @@ bool BlockFrame::gather(const VoxelLevel& level, const TargetBox& box, const Vec
   Source* const sources = sources_.make(room);
   Entry* const entries = entries_.make(room);
 
+  const VoxelSpan voxels = level.voxels;
   std::size_t count = 0;
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     const std::size_t begin = runs_[r] * spatial::BoxTree::kLeaf;
     if (r + kAskAhead < runs_.size()) {
       const std::size_t later = runs_[r + kAskAhead] * spatial::BoxTree::kLeaf;
-      prefetch_all(std::span(level.voxels.data() + later, spatial::BoxTree::kLeaf));
+      voxels.subspan(later, spatial::BoxTree::kLeaf).prefetch_all();
     }
-    const std::size_t end = std::min(begin + spatial::BoxTree::kLeaf, level.voxels.size());
+    const std::size_t end = std::min(begin + spatial::BoxTree::kLeaf, voxels.size());
     for (std::size_t i = begin; i < end; ++i) {
-      const Voxel& v = level.voxels[i];
+      const Voxel v = voxels[i];
       if (v.count == 0.0f) continue;  // has no normal
       const Vec3 p = v.position - origin;
       entries[count] = {{p.x(), p.y(), p.z()}, v.qq, v.qn, static_cast<std::uint32_t>(i)};

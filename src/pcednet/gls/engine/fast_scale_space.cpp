@@ -112,11 +112,11 @@ PyramidPlan FastScaleSpace::pyramid_plan() const {
 void FastScaleSpace::find_range(OrientedPoints points, std::span<const std::uint32_t> curve,
                                 bool may_share_places) {
   const VoxelLevel& level = pyramid_.levels.front();
+  const VoxelSpan voxels = level.voxels;
   const auto distance = [&](std::size_t i) {
     std::array<double, kSpacingNeighbours> sq_distances;
-    const std::size_t found =
-        level.boxes.nearest(place_[curve[i]], sq_distances,
-                            [&](std::size_t place) { return level.voxels[place].position; });
+    const std::size_t found = level.boxes.nearest(
+        place_[curve[i]], sq_distances, [&](std::size_t place) { return voxels.position(place); });
     return mean_distance(std::span(sq_distances).first(found)) / unit_;
   };
   const auto spacings = [&] {

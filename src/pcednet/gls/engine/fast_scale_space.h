@@ -27,7 +27,7 @@ namespace pcednet::gls {
 /// coincide).
 class FastScaleSpace {
  public:
-  /// Copies what it needs of `points`, about 150 bytes each. Throws as check() does, Error(kUsage)
+  /// Copies what it needs of `points`, 80 to 140 bytes each. Throws as check() does, Error(kUsage)
   /// for a reconstruction with planes, and Error(kInsufficient) for clouds without a range of
   /// scales (see scale_range()).
   FastScaleSpace(OrientedPoints points, const ScaleSpaceOptions& options,

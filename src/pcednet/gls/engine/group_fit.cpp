@@ -75,7 +75,7 @@ void put(const RecheckedFit& exact, double t, std::size_t lane, GroupFit& result
 }
 
 DoubtfulTarget doubtful(const Group& group, std::size_t lane, double t, const Gate& gate) {
-  const Voxel& point = group.points[lane];
+  const Voxel point = group.points[lane];
   const auto& offset = group.offsets[lane];
   return {point.position, Vec3(offset[0], offset[1], offset[2]) * t,
           Vec3(point.normal[0], point.normal[1], point.normal[2]), t, gate};
@@ -251,12 +251,12 @@ float open_from(std::span<const Gate> gates) {
   return static_cast<float>(from + kSlack);
 }
 
-Group place(std::span<const Voxel> points, const BlockFrame& frame, const SourceBox& box,
+Group place(VoxelSpan points, const BlockFrame& frame, const SourceBox& box,
             const NormalBox& normals) {
   Group group = {.points = points, .targets = {}, .box = box, .normals = normals};
   LaneTargets& targets = group.targets;
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    const Voxel& point = points[std::min(lane, points.size() - 1)];
+    const Voxel point = points[std::min(lane, points.size() - 1)];
     const Vec3 local = frame.local(point.position);
     targets.x[lane] = static_cast<float>(local.x());
     targets.y[lane] = static_cast<float>(local.y());

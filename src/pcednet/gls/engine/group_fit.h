@@ -19,7 +19,7 @@ struct LaneGroup {
 
 /// The evaluation points of a group: its points, and where they have moved in a frame.
 struct Group {
-  std::span<const Voxel> points;
+  VoxelSpan points;
   LaneTargets targets;
   SourceBox box;                                          ///< of the targets
   NormalBox normals;                                      ///< theirs
@@ -59,7 +59,7 @@ inline constexpr float kMargin = 0.25f;
 float open_from(std::span<const Gate> gates);
 
 /// At most kLanes points where they are, and their boxes.
-Group place(std::span<const Voxel> points, const BlockFrame& frame, const SourceBox& box,
+Group place(VoxelSpan points, const BlockFrame& frame, const SourceBox& box,
             const NormalBox& normals);
 
 /// Fits every lane with every gate, one or two: fits[i] with gates[i].

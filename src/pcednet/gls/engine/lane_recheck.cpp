@@ -20,7 +20,7 @@ void for_neighbours(const DoubtfulTarget& target, const VoxelLevel& level,
                     std::span<const std::uint32_t> candidates, Use&& use) {
   const bool gated = target.gate && !target.normal.isZero(0.0);
   for (const std::uint32_t i : candidates) {
-    const Voxel& v = level.voxels[i];
+    const Voxel v = level.voxels[i];
     VoxelNeighbour j;
     j.y = (v.position - target.position) - target.offset;
     j.sq_distance = j.y.x() * j.y.x() + j.y.y() * j.y.y() + j.y.z() * j.y.z() + v.qq;

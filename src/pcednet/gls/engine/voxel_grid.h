@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <span>
 
 #include "pcednet/gls/engine/voxel_merge.h"
 #include "pcednet/spatial/morton.h"
@@ -18,7 +17,7 @@ inline constexpr int kAxisBits = 2, kGatedBits = kAxisBits + 6, kBlockBits = kAx
 // A block is this many cells a side, and where it is merged further, this many voxels.
 inline constexpr std::uint64_t kBlockCells = 8, kBlockVoxels = 3;
 
-inline std::size_t dominant_axis(const std::array<float, 3>& n) {
+inline std::size_t dominant_axis(const MeanNormal& n) {
   const float x = std::abs(n[0]), y = std::abs(n[1]), z = std::abs(n[2]);
   return x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
 }
@@ -28,7 +27,7 @@ inline std::size_t dominant_axis(const std::array<float, 3>& n) {
 /// curve.
 class VoxelGrid {
  public:
-  VoxelGrid(std::span<const Voxel> voxels, const MergeCells& cells)
+  VoxelGrid(VoxelSpan voxels, const MergeCells& cells)
       : voxels_(voxels),
         origin_(cells.origin),
         inverse_edge_(1.0 / cells.edge),
@@ -39,7 +38,7 @@ class VoxelGrid {
     const std::array<std::uint64_t, 3> cell = cell_of(i);
     const auto wrapped = [&](std::size_t a) { return static_cast<std::uint32_t>(cell[a] & kMost); };
     const std::uint64_t place = spatial::morton_code({wrapped(0), wrapped(1), wrapped(2)});
-    return place << kAxisBits | dominant_axis(voxels_[i].normal);
+    return place << kAxisBits | dominant_axis(voxels_.normal(i));
   }
 
   bool has_cubes() const { return cells_along_ >= static_cast<double>(kMost); }
@@ -85,7 +84,7 @@ class VoxelGrid {
 
   /// In units of the edge.
   std::array<double, 3> place_of(std::size_t i) const {
-    const Vec3 place = (voxels_[i].position - origin_) * inverse_edge_;
+    const Vec3 place = (voxels_.position(i) - origin_) * inverse_edge_;
     const auto within = [](double c) { return std::clamp(c, 0.0, 0x1p62); };
     return {within(place.x()), within(place.y()), within(place.z())};
   }
@@ -97,7 +96,7 @@ class VoxelGrid {
     return cell;
   }
 
-  std::span<const Voxel> voxels_;
+  VoxelSpan voxels_;
   Vec3 origin_;
   double inverse_edge_, cells_along_;
 };

@@ -20,8 +20,8 @@ constexpr double kFillsSpace = 4.0;
 constexpr std::size_t kFewestToFill = 18;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-Vec3 normal_of(const Voxel& voxel) {
-  return {voxel.normal[0], voxel.normal[1], voxel.normal[2]};
+Vec3 vector_of(const MeanNormal& normal) {
+  return {normal[0], normal[1], normal[2]};
 }
 
 /// Sums of the points of one voxel, about a fixed place near them.
@@ -32,7 +32,7 @@ struct VoxelSums {
 
   void add(const Voxel& voxel) {
     if (count == 0) place = voxel.position;
-    const Vec3 offset = voxel.position - place, normal = normal_of(voxel);
+    const Vec3 offset = voxel.position - place, normal = vector_of(voxel.normal);
     const double c = voxel.count;
     count += c;
     q += c * offset;
@@ -57,7 +57,7 @@ struct VoxelSums {
 /// Members without a normal are ignored.
 class BlockPlan {
  public:
-  BlockPlan(std::span<const Voxel> from, const VoxelGrid& grid, Crowd crowd)
+  BlockPlan(VoxelSpan from, const VoxelGrid& grid, Crowd crowd)
       : from_(from), grid_(&grid), crowd_(crowd) {}
 
   /// The voxel of each of `members`, sorted by key.
@@ -85,8 +85,8 @@ class BlockPlan {
     for_cells(kAxisBits, [&](std::size_t begin, std::size_t end) {
       bool is_empty = true;
       for (std::size_t i = begin; i < end; ++i) {
-        spread.add(normal_of(voxel(i)), voxel(i).count);
-        is_empty = is_empty && voxel(i).count == 0.0f;
+        spread.add(vector_of(normal(i)), count(i));
+        is_empty = is_empty && count(i) == 0.0f;
       }
       occupied += is_empty ? 0 : 1;
     });
@@ -94,7 +94,8 @@ class BlockPlan {
   }
 
  private:
-  const Voxel& voxel(std::size_t i) const { return from_[members_[i].index]; }
+  const MeanNormal& normal(std::size_t i) const { return from_.normal(members_[i].index); }
+  float count(std::size_t i) const { return from_.count(members_[i].index); }
 
   /// Calls `use(begin, end)` for the members of every cell, or cube of cells.
   template <typename Use>
@@ -115,9 +116,9 @@ class BlockPlan {
       std::uint32_t number[3][2] = {{kNone, kNone}, {kNone, kNone}, {kNone, kNone}};
       for (std::size_t i = begin; i < end; ++i) {
         voxel_of_[i] = kNone;
-        if (voxel(i).count == 0.0f) continue;
+        if (count(i) == 0.0f) continue;
         const std::size_t axis = members_[i].key & 3;
-        std::uint32_t& mine = number[axis][voxel(i).normal[axis] < 0.0f];
+        std::uint32_t& mine = number[axis][normal(i)[axis] < 0.0f];
         if (mine == kNone) mine = count_++;
         voxel_of_[i] = mine;
       }
@@ -131,14 +132,14 @@ class BlockPlan {
     number.fill(kNone);
     for (std::size_t i = 0; i < members_.size(); ++i) {
       voxel_of_[i] = kNone;
-      if (voxel(i).count == 0.0f) continue;
+      if (count(i) == 0.0f) continue;
       std::uint32_t& mine = number[grid_->place_in_block(members_[i].index)];
       if (mine == kNone) mine = count_++;
       voxel_of_[i] = mine;
     }
   }
 
-  std::span<const Voxel> from_;
+  VoxelSpan from_;
   const VoxelGrid* grid_;
   Crowd crowd_;
   std::span<const Keyed> members_;
@@ -147,7 +148,7 @@ class BlockPlan {
 };
 
 /// The voxels with their keys, along the curve: by cube, and by key within.
-UnsetArray<Keyed> along_curve(std::span<const Voxel> from, const VoxelGrid& grid) {
+UnsetArray<Keyed> along_curve(VoxelSpan from, const VoxelGrid& grid) {
   UnsetArray<Keyed> keyed(from.size());
   const auto set_keys = [&](const auto& key_of) {
     parallel_for_each(keyed.size(), [&](std::size_t i) { keyed[i].key = key_of(keyed[i].index); });
@@ -164,15 +165,16 @@ UnsetArray<Keyed> along_curve(std::span<const Voxel> from, const VoxelGrid& grid
   return keyed;
 }
 
-/// Asks for the voxel of a later member.
-void ask_ahead(std::span<const Voxel> from, std::span<const Keyed> keyed, std::size_t i) {
-  if (i + kAskAhead < keyed.size()) prefetch(from[keyed[i + kAskAhead].index]);
+/// Asks for the voxel of a later one of `members`, Keyed or Assigned.
+template <typename Members>
+void ask_ahead(VoxelSpan from, const Members& members, std::size_t i) {
+  if (i + kAskAhead < members.size()) from.prefetch(members[i + kAskAhead].index);
 }
 
 /// Calls `use(members, voxel_of, plan)` for every block of `keyed`, which begins and ends with one.
 template <typename Use>
-void for_blocks(std::span<const Voxel> from, const VoxelGrid& grid, Crowd crowd,
-                std::span<const Keyed> keyed, Use&& use) {
+void for_blocks(VoxelSpan from, const VoxelGrid& grid, Crowd crowd, std::span<const Keyed> keyed,
+                Use&& use) {
   BlockPlan plan(from, grid, crowd);
   for (std::size_t begin = 0, end; begin < keyed.size(); begin = end) {
     ask_ahead(from, keyed, begin);
@@ -203,6 +205,12 @@ std::vector<std::size_t> stretches_of(std::span<const Keyed> keyed, const VoxelG
   return starts;
 }
 
+/// A voxel to merge, and the number within its block of the voxel that it becomes part of, or
+/// kNone.
+struct Assigned {
+  std::uint32_t index, voxel;
+};
+
 /// How a stretch becomes voxels.
 struct StretchPlan {
   struct Block {
@@ -212,35 +220,35 @@ struct StretchPlan {
   std::size_t voxels = 0;     ///< of all blocks
 };
 
-/// Plans the blocks of `keyed`, where the number of each member's voxel in its block replaces the
-/// key.
-StretchPlan plan_stretch(std::span<const Voxel> from, const VoxelGrid& grid, Crowd crowd,
-                         std::span<Keyed> keyed) {
+/// Plans the blocks of `keyed`, and writes their members to `to`.
+StretchPlan plan_stretch(VoxelSpan from, const VoxelGrid& grid, Crowd crowd,
+                         std::span<const Keyed> keyed, Assigned* to) {
   StretchPlan stretch;
-  auto next = keyed.begin();
   for_blocks(from, grid, crowd, keyed,
              [&](std::span<const Keyed> members, std::span<const std::uint32_t> voxel_of,
                  const BlockPlan& plan) {
                stretch.blocks.push_back({static_cast<std::uint32_t>(members.size()),
                                          static_cast<std::uint32_t>(plan.count())});
                stretch.voxels += plan.count();
-               for (const std::uint32_t voxel : voxel_of) (next++)->key = voxel;
+               for (std::size_t i = 0; i < members.size(); ++i) {
+                 *to++ = {members[i].index, voxel_of[i]};
+               }
              });
   return stretch;
 }
 
-/// Writes the voxels of a planned stretch.
-void merge_stretch(std::span<const Voxel> from, const StretchPlan& stretch,
-                   std::span<const Keyed> keyed, Voxel* to) {
+/// Writes the voxels of a planned stretch from number `first` on.
+void merge_stretch(VoxelSpan from, const StretchPlan& stretch, std::span<const Assigned> members,
+                   VoxelArray& to, std::size_t first) {
   std::vector<VoxelSums> sums;
   std::size_t i = 0;
   for (const StretchPlan::Block& block : stretch.blocks) {
     sums.assign(block.voxels, {});
     for (const std::size_t end = i + block.members; i < end; ++i) {
-      ask_ahead(from, keyed, i);
-      if (keyed[i].key != kNone) sums[keyed[i].key].add(from[keyed[i].index]);
+      ask_ahead(from, members, i);
+      if (members[i].voxel != kNone) sums[members[i].voxel].add(from[members[i].index]);
     }
-    for (const VoxelSums& sum : sums) *to++ = sum.voxel();
+    for (const VoxelSums& sum : sums) to.set(first++, sum.voxel());
   }
 }
 
@@ -250,8 +258,8 @@ struct ForecastSums {
 };
 
 /// The forecast for the points of the voxels [begin, end), as if there were no others.
-ForecastSums forecast_stretch(std::span<const Voxel> from, const VoxelGrid& grid, Crowd crowd,
-                              std::size_t begin, std::size_t end) {
+ForecastSums forecast_stretch(VoxelSpan from, const VoxelGrid& grid, Crowd crowd, std::size_t begin,
+                              std::size_t end) {
   std::vector<Keyed> keyed;
   keyed.reserve(end - begin);
   for (std::size_t i = begin; i < end; ++i) {
@@ -270,7 +278,7 @@ ForecastSums forecast_stretch(std::span<const Voxel> from, const VoxelGrid& grid
                for (std::size_t i = 0; i < members.size(); ++i) {
                  if (voxel_of[i] == kNone) continue;
                  merged[voxel_of[i]] += 1.0;
-                 count[voxel_of[i]] += from[members[i].index].count;
+                 count[voxel_of[i]] += from.count(members[i].index);
                }
                for (std::size_t v = 0; v < plan.count(); ++v) {
                  sums.points += count[v];
@@ -283,28 +291,30 @@ ForecastSums forecast_stretch(std::span<const Voxel> from, const VoxelGrid& grid
 
 }  // namespace
 
-UnsetArray<Voxel> merge_voxels(std::span<const Voxel> from, const MergeCells& cells) {
+VoxelArray merge_voxels(VoxelSpan from, const MergeCells& cells) {
   constexpr std::size_t kStretch = 1 << 14;
   const VoxelGrid grid(from, cells);
   UnsetArray<Keyed> keyed = along_curve(from, grid);
   const std::vector<std::size_t> starts = stretches_of(keyed, grid, kStretch);
-  const auto members = [&](std::size_t s) {
-    return std::span<Keyed>(keyed).subspan(starts[s], starts[s + 1] - starts[s]);
+  const auto stretch = [&](auto& of, std::size_t s) {
+    return std::span(of).subspan(starts[s], starts[s + 1] - starts[s]);
   };
+  UnsetArray<Assigned> members(from.size());
   std::vector<StretchPlan> plans(starts.size() - 1);
   parallel_blocks(plans.size(), 1, [&](std::size_t s, std::size_t) {
-    plans[s] = plan_stretch(from, grid, cells.crowd, members(s));
+    plans[s] = plan_stretch(from, grid, cells.crowd, stretch(keyed, s), members.data() + starts[s]);
   });
+  keyed = {};  // before the voxels take their memory
   std::vector<std::size_t> first(starts.size());
   for (std::size_t s = 0; s < plans.size(); ++s) first[s + 1] = first[s] + plans[s].voxels;
-  UnsetArray<Voxel> to(first.back());
+  VoxelArray to = VoxelArray::of_voxels(first.back());
   parallel_blocks(plans.size(), 1, [&](std::size_t s, std::size_t) {
-    merge_stretch(from, plans[s], members(s), to.data() + first[s]);
+    merge_stretch(from, plans[s], stretch(members, s), to, first[s]);
   });
   return to;
 }
 
-MergeForecast forecast_merge(std::span<const Voxel> from, const MergeCells& cells) {
+MergeForecast forecast_merge(VoxelSpan from, const MergeCells& cells) {
   constexpr std::size_t kStretch = 1 << 14;
   const VoxelGrid grid(from, cells);
   // Clumps far from each other may differ.

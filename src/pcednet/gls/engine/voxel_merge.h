@@ -1,7 +1,5 @@
 #pragma once
 
-#include <span>
-
 #include "pcednet/gls/engine/voxel_pyramid.h"
 
 namespace pcednet::gls {
@@ -17,7 +15,7 @@ struct MergeCells {
 
 /// The voxels of `from` merged, along the curve through the cells: one voxel per cell, dominant
 /// axis of the normal and sign, so that none averages across an edge; for exceptions see Crowd.
-UnsetArray<Voxel> merge_voxels(std::span<const Voxel> from, const MergeCells& cells);
+VoxelArray merge_voxels(VoxelSpan from, const MergeCells& cells);
 
 /// The effect of merge_voxels() on the average point, estimated from every sixteenth range of the
 /// curve; from all ranges where there are more than 2^20 cells along an axis.
@@ -27,6 +25,6 @@ struct MergeForecast {
   /// on scans of surfaces, 20 or more on noise.
   double filling = 0.0;
 };
-MergeForecast forecast_merge(std::span<const Voxel> from, const MergeCells& cells);
+MergeForecast forecast_merge(VoxelSpan from, const MergeCells& cells);
 
 }  // namespace pcednet::gls

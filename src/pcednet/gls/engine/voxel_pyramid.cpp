@@ -20,8 +20,7 @@ constexpr double kWorthwhileMerge = 1.6;
 constexpr double kCrowded = 9.0, kCrowdedGated = 8.0;
 
 /// How to make the level of a scale from the preceding level; `crowd`: how that one was made.
-PyramidPlan::Level plan_level(std::span<const Voxel> finer, MergeCells cells, bool gated,
-                              Crowd& crowd) {
+PyramidPlan::Level plan_level(VoxelSpan finer, MergeCells cells, bool gated, Crowd& crowd) {
   cells.crowd = crowd;
   MergeForecast forecast = forecast_merge(finer, cells);
   if (forecast.filling > (gated ? kCrowdedGated : kCrowded)) {
@@ -34,8 +33,8 @@ PyramidPlan::Level plan_level(std::span<const Voxel> finer, MergeCells cells, bo
 }
 
 void add_boxes(VoxelLevel& level) {
-  level.boxes = spatial::BoxTree(level.voxels.size(),
-                                 [&](std::size_t i) { return level.voxels[i].position; });
+  const VoxelSpan voxels = level.voxels;
+  level.boxes = spatial::BoxTree(voxels.size(), [&](std::size_t i) { return voxels.position(i); });
 }
 
 }  // namespace
@@ -45,7 +44,7 @@ VoxelPyramid make_pyramid(std::span<const Vec3> positions, std::span<const Vec3>
                           const PyramidPlan* whole) {
   VoxelPyramid pyramid;
   VoxelLevel& points = pyramid.levels.emplace_back();
-  points.voxels = UnsetArray<Voxel>(order.size());
+  points.voxels = VoxelArray::of_points(order.size());
   constexpr std::size_t kStretch = 1 << 14;
   std::vector<std::pair<Vec3, Vec3>> corners((order.size() + kStretch - 1) / kStretch);
   parallel_blocks(order.size(), kStretch, [&](std::size_t begin, std::size_t end) {
@@ -56,16 +55,13 @@ VoxelPyramid make_pyramid(std::span<const Vec3> positions, std::span<const Vec3>
         prefetch(normals[order[i + kAskAhead]]);
       }
       const Vec3& n = normals[order[i]];
-      Voxel& point = points.voxels[i];
-      point.position = positions[order[i]] * unit;
-      point.count = is_usable(n) ? 1.0f : 0.0f;
-      point.qq = point.qn = 0.0f;
-      for (std::size_t a = 0; a < 3; ++a) {
-        const auto component = static_cast<float>(n[static_cast<Eigen::Index>(a)]);
-        point.normal[a] = point.count > 0.0f ? component : 0.0f;
-      }
-      min = min.cwiseMin(point.position);
-      max = max.cwiseMax(point.position);
+      const Vec3 position = positions[order[i]] * unit;
+      const Eigen::Vector3f normal = n.cast<float>();
+      points.voxels.set_point(
+          i, position,
+          is_usable(n) ? MeanNormal{normal.x(), normal.y(), normal.z()} : MeanNormal{});
+      min = min.cwiseMin(position);
+      max = max.cwiseMax(position);
     }
     corners[begin / kStretch] = {min, max};
   });
@@ -90,7 +86,7 @@ void make_levels(VoxelPyramid& pyramid, std::span<const double> scales, const Le
                         .side = pyramid.side,
                         .edge = options.eps * scales[i],
                         .crowd = {}};
-    const UnsetArray<Voxel>& finer = pyramid.levels.back().voxels;
+    const VoxelSpan finer = pyramid.levels.back().voxels;
     const PyramidPlan::Level plan = options.whole ? options.whole->levels.at(i)
                                                   : plan_level(finer, cells, options.gated, crowd);
     if (plan.merges) {
@@ -98,7 +94,9 @@ void make_levels(VoxelPyramid& pyramid, std::span<const double> scales, const Le
       VoxelLevel& level = pyramid.levels.emplace_back();
       level.cell = cells.edge;
       level.voxels = merge_voxels(finer, cells);
-      for (const Voxel& voxel : level.voxels) level.most_qq = std::max(level.most_qq, voxel.qq);
+      for (std::size_t v = 0; v < level.voxels.size(); ++v) {
+        level.most_qq = std::max(level.most_qq, level.voxels[v].qq);
+      }
       add_boxes(level);
     }
     pyramid.plan.push_back(plan);

@@ -1,37 +1,23 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "pcednet/core/progress.h"
-#include "pcednet/core/unset_array.h"
 #include "pcednet/core/vec3.h"
+#include "pcednet/gls/engine/voxels.h"
 #include "pcednet/gls/neighbourhood.h"
 #include "pcednet/gls/pyramid_plan.h"
 #include "pcednet/spatial/box_tree.h"
 
 namespace pcednet::gls {
 
-/// A voxel that represents the points in it, or a single point.
-///
-/// Moments add, so a sum over a neighbourhood may use a voxel for its points when the voxel is
-/// small compared with the support. `qq` and `qn` remove the second-order bias: points on one
-/// sphere are still fitted exactly.
-struct Voxel {
-  Vec3 position;                ///< mean position
-  std::array<float, 3> normal;  ///< mean normal, not renormalised
-  float count;                  ///< points; 0 for a point whose normal is unusable
-  float qq;                     ///< mean |q|^2, q the position of its points about `position`
-  float qn;                     ///< mean q.n likewise
-};
-
 /// The cloud at one resolution, along a space-filling curve.
 struct VoxelLevel {
   double cell = 0.0;     ///< edge of the cells that were merged; 0 for the points themselves
   float most_qq = 0.0f;  ///< the largest qq of its voxels
-  UnsetArray<Voxel> voxels;
+  VoxelArray voxels;
   spatial::BoxTree boxes;
 };
 
