@@ -57,11 +57,11 @@ TEST(Projections, TakeTheCodeOfTheHeightsAlongside) {
   EXPECT_ERROR(ErrorKind::kUsage, system_of_code(25832, 7));
   if (!has_projections()) return;
   EXPECT_EQ(system_of_code(25832, 8228).unit, LengthUnit::kNone);  // heights in feet
-  for (const auto& [epsg, heights] : {std::pair(25832, 4326), std::pair(7837, 25832)}) {
-    const auto error = test::error_of([&] { system_of_code(epsg, heights); });
-    ASSERT_TRUE(error) << epsg;
+  for (const auto& codes : {std::pair(25832, 4326), std::pair(7837, 25832)}) {
+    const auto error = test::error_of([&] { system_of_code(codes.first, codes.second); });
+    ASSERT_TRUE(error) << codes.first;
     EXPECT_EQ(std::string(error->what()),
-              fmt::format("EPSG:{}+{}: PROJ knows no such system", epsg, heights));
+              fmt::format("EPSG:{}+{}: PROJ knows no such system", codes.first, codes.second));
   }
 }
 
