@@ -96,49 +96,38 @@ NeighbourChoice choose_one_count(std::span<const Vec3> positions) {
 Adjacency make_adjacency(const NeighbourGraph& graph, std::size_t count, const Progress* progress) {
   const std::size_t points = graph.points.size();
   count = std::min(count, graph.degree);
-  Adjacency adjacency;
-  adjacency.first.assign(points + 1, count);
-  adjacency.first[0] = 0;
+  Adjacency adjacency = {&graph, count, std::vector<std::size_t>(points + 1), {}};
   if (count == 0) return adjacency;
-  const auto by_block = [&](const auto& work) {
+  UnsetArray<double> sq_reach(points);
+  parallel_for_each(points, [&](std::size_t i) {
+    sq_reach[i] = sq_distance(graph.points[i].data(), graph.points[graph.of(i)[count - 1]].data());
+  });
+  // Calls work(i, j) for every neighbour j of i that does not have i among its own.
+  const auto for_one_sided = [&](const auto& work) {
     parallel_blocks(points, kQueriesAtOnce, [&](std::size_t begin, std::size_t end) {
       throw_if_cancelled(progress);
-      for (std::size_t i = begin; i < end; ++i) work(i, graph.of(i).first(count));
+      std::vector<std::uint8_t> within(count);
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto row = graph.of(i).first(count);
+        compare_with_reach(graph.points.data(), sq_reach.data(), i, row, within.data());
+        for (std::size_t k = 0; k < count; ++k) {
+          if (within[k] == kInside) continue;
+          const auto back = graph.of(row[k]).first(count);
+          const bool is_mutual =
+              within[k] == kOnRim && std::find(back.begin(), back.end(), i) != back.end();
+          if (!is_mutual) work(static_cast<std::uint32_t>(i), row[k]);
+        }
+      }
     });
   };
-  UnsetArray<double> sq_reach(points);
-  by_block([&](std::size_t i, const auto& row) {
-    sq_reach[i] = sq_distance(graph.points[i].data(), graph.points[row.back()].data());
-  });
-
-  // Every point writes its own links to the front of its row; of one-sided ones, the other end gets
-  // its link behind those. The counts become the places to write the next of these to.
   const auto take = [](std::size_t& counter) {
     return std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed);
   };
-  UnsetArray<std::uint8_t> mutual(points * count);
-  by_block([&](std::size_t i, const auto& row) {
-    std::uint8_t* const flags = mutual.data() + i * count;
-    compare_with_reach(graph.points.data(), sq_reach.data(), i, row, flags);
-    for (std::size_t k = 0; k < count; ++k) {
-      if (flags[k] == kOnRim) {
-        const auto back = graph.of(row[k]).first(count);
-        flags[k] = std::find(back.begin(), back.end(), i) != back.end();
-      }
-      if (!flags[k]) take(adjacency.first[row[k] + 1]);
-    }
-  });
+  for_one_sided([&](std::uint32_t, std::uint32_t j) { take(adjacency.first[j + 1]); });
   std::partial_sum(adjacency.first.begin(), adjacency.first.end(), adjacency.first.begin());
-  adjacency.target = UnsetArray<std::uint32_t>(adjacency.first.back());
-  UnsetArray<std::size_t> next(points);
-  by_block([&](std::size_t i, const auto&) { next[i] = adjacency.first[i] + count; });
-  by_block([&](std::size_t i, const auto& row) {
-    std::copy(row.begin(), row.end(), adjacency.target.data() + adjacency.first[i]);
-    for (std::size_t k = 0; k < count; ++k) {
-      if (mutual[i * count + k]) continue;
-      adjacency.target[take(next[row[k]])] = static_cast<std::uint32_t>(i);
-    }
-  });
+  adjacency.others = UnsetArray<std::uint32_t>(adjacency.first.back());
+  std::vector<std::size_t> next(adjacency.first.begin(), adjacency.first.end() - 1);
+  for_one_sided([&](std::uint32_t i, std::uint32_t j) { adjacency.others[take(next[j])] = i; });
   return adjacency;
 }
 

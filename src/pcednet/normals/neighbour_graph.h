@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -43,20 +44,25 @@ NeighbourGraph make_neighbour_graph(std::span<const Vec3> positions,
 /// The choice of one number of neighbours for all points of a cloud, as other programs make it.
 NeighbourChoice choose_one_count(std::span<const Vec3> positions);
 
-/// The undirected graph: for every point its neighbours and the points that have it as a neighbour,
-/// each once.
+/// The undirected graph: every point is linked with its nearest neighbours, and with the other
+/// points that have it among theirs.
 struct Adjacency {
-  std::vector<std::size_t> first;    ///< points + 1
-  UnsetArray<std::uint32_t> target;  ///< of point i: first[i] to first[i + 1], in any order
+  const NeighbourGraph* graph = nullptr;
+  std::size_t count = 0;             ///< nearest neighbours of each point
+  std::vector<std::size_t> first;    ///< points + 1: where the others of each begin
+  UnsetArray<std::uint32_t> others;  ///< of point i: first[i] to first[i + 1], in any order
 
   std::size_t size() const { return first.size() - 1; }
-  std::span<const std::uint32_t> of(std::size_t point) const {
-    return {target.data() + first[point], first[point + 1] - first[point]};
+  std::size_t degree(std::size_t point) const { return count + first[point + 1] - first[point]; }
+  /// The points linked with one, each once, in two stretches.
+  std::array<std::span<const std::uint32_t>, 2> of(std::size_t point) const {
+    return {graph->of(point).first(count),
+            {others.data() + first[point], first[point + 1] - first[point]}};
   }
 };
 
-/// Uses at most the nearest `count` neighbours of each point. Throws Error(kCancelled) when
-/// `progress` asks to cancel.
+/// Uses at most the nearest `count` neighbours of each point; `graph` must outlive the result.
+/// Throws Error(kCancelled) when `progress` asks to cancel.
 Adjacency make_adjacency(const NeighbourGraph& graph, std::size_t count,
                          const Progress* progress = nullptr);
 

@@ -83,11 +83,11 @@ std::size_t count_minorities(const Signs& signs, std::span<const Vec3> normals,
   constexpr double kAlong = 0.9;
   std::vector<std::uint8_t> is_along(normals.size());
   parallel_for_each(normals.size(), [&](std::size_t i) {
-    const auto row = links.of(i);
-    const auto along = std::count_if(row.begin(), row.end(), [&](std::uint32_t j) {
-      return std::abs(normals[i].dot(normals[j])) > kAlong;
-    });
-    is_along[i] = 2 * static_cast<std::size_t>(along) > row.size();
+    std::size_t along = 0;
+    for (const auto& row : links.of(i)) {
+      for (const std::uint32_t j : row) along += std::abs(normals[i].dot(normals[j])) > kAlong;
+    }
+    is_along[i] = 2 * along > links.degree(i);
   });
   std::vector<std::size_t> sizes(signs.parts, 0), turned(signs.parts, 0);
   for (std::size_t i = 0; i < normals.size(); ++i) {
@@ -203,7 +203,7 @@ std::size_t face_scanners(std::span<const Vec3> positions, std::span<Vec3> norma
   return faced;
 }
 
-Orientation orient_points(NeighbourGraph& graph, std::span<Vec3> normals,
+Orientation orient_points(const NeighbourGraph& graph, std::span<Vec3> normals,
                           const OrientOptions& options, const Progress* progress) {
   check(options);
   if (options.viewpoint) {
@@ -215,10 +215,8 @@ Orientation orient_points(NeighbourGraph& graph, std::span<Vec3> normals,
   Stage stage(progress, "orientation", 4);
   const Adjacency links =
       make_adjacency(graph, static_cast<std::size_t>(options.neighbours), progress);
-  graph.neighbours = {};
-  graph.degree = graph.choice.neighbours = 0;
   stage.advance();
-  const SignVotes votes(graph.points, normals, links, progress);
+  const SignVotes votes(graph.points, normals, links);
   Signs signs = contract(votes, progress);
   stage.advance();
   turn_outvoted_points(votes, signs.sign);
@@ -232,7 +230,7 @@ Orientation orient_points(NeighbourGraph& graph, std::span<Vec3> normals,
   return orientation;
 }
 
-Orientation orient_normals(NeighbourGraph& graph, std::span<const Vec3> positions,
+Orientation orient_normals(const NeighbourGraph& graph, std::span<const Vec3> positions,
                            std::span<Vec3> normals, const OrientOptions& options,
                            const Progress* progress) {
   check(options);
@@ -256,7 +254,7 @@ Orientation orient_normals(std::span<const Vec3> positions, std::span<Vec3> norm
   check(options);
   check_size("normals", normals.size(), positions.size());
   const std::size_t count = options.viewpoint ? 1 : static_cast<std::size_t>(options.neighbours);
-  NeighbourGraph graph = make_neighbour_graph(positions, NeighbourChoice{count}, progress);
+  const NeighbourGraph graph = make_neighbour_graph(positions, NeighbourChoice{count}, progress);
   return orient_normals(graph, positions, normals, options, progress);
 }
 

@@ -52,13 +52,12 @@ Orientation orient_normals(std::span<const Vec3> positions, std::span<Vec3> norm
                            const OrientOptions& options = {}, const Progress* progress = nullptr);
 
 /// The same on a graph made from the positions; uses at most its degree of options.neighbours.
-/// Gives up the graph's neighbours, which take as much memory as the votes.
-Orientation orient_normals(NeighbourGraph& graph, std::span<const Vec3> positions,
+Orientation orient_normals(const NeighbourGraph& graph, std::span<const Vec3> positions,
                            std::span<Vec3> normals, const OrientOptions& options = {},
                            const Progress* progress = nullptr);
 
 /// The same for the normals of the graph's points.
-Orientation orient_points(NeighbourGraph& graph, std::span<Vec3> normals,
+Orientation orient_points(const NeighbourGraph& graph, std::span<Vec3> normals,
                           const OrientOptions& options, const Progress* progress = nullptr);
 
 /// Turns every normal to face the viewpoint of its position, as in OrientOptions; those whose

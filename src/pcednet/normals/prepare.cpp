@@ -24,7 +24,8 @@ PreparedNormals estimate_oriented_normals(std::span<const Vec3> positions,
                                           const OrientedNormalsOptions& options,
                                           const Progress* progress) {
   check_extent(positions);
-  NeighbourGraph graph = make_neighbour_graph(positions, options.choice, progress, options.curve);
+  const NeighbourGraph graph =
+      make_neighbour_graph(positions, options.choice, progress, options.curve);
   std::vector<Vec3> of_points = estimate_normals(graph, progress);
   PreparedNormals prepared;
   prepared.choice = graph.choice;
@@ -47,7 +48,8 @@ PreparedNormals complete_and_orient_normals(std::span<const Vec3> positions,
                                             const Progress* progress) {
   check_size("normals", given.size(), positions.size());
   check_extent(positions);
-  NeighbourGraph graph = make_neighbour_graph(positions, options.choice, progress, options.curve);
+  const NeighbourGraph graph =
+      make_neighbour_graph(positions, options.choice, progress, options.curve);
   PreparedNormals prepared;
   prepared.choice = graph.choice;
   prepared.normals.assign(given.begin(), given.end());

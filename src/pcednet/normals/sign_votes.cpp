@@ -15,7 +15,7 @@
 namespace pcednet::normals {
 namespace {
 
-constexpr std::size_t kVotesAtOnce = 1024;
+constexpr std::size_t kPointsAtOnce = 1024;
 
 [[gnu::always_inline]] inline std::int32_t vote_of(const double* p, const double* n,
                                                    const double* q, const double* m) {
@@ -28,20 +28,25 @@ constexpr std::size_t kVotesAtOnce = 1024;
   return static_cast<std::int32_t>(vote + std::copysign(0.5, vote));
 }
 
-/// Some points and their normals, side by side.
-struct VoteLanes {
-  static constexpr std::size_t kMost = 64;
-  alignas(64) double point[3][kMost], normal[3][kMost];
-};
+constexpr std::size_t kVectors = 8;  // lanes, and so a multiple of their number
 
+/// The votes of point `i` with `others`, and of lanes up to a multiple of kVectors.
 PCEDNET_VECTOR_CLONES
-void vote_in_lanes(const double* p, const double* n, const VoteLanes& lanes, std::size_t count,
-                   std::int32_t* __restrict votes) {
+void vote_in_lanes(const Vec3* points, const Vec3* normals, std::size_t i,
+                   std::span<const std::uint32_t> others, std::int32_t* __restrict votes) {
+  alignas(64) double q[3][SignVotes::kAtOnce], m[3][SignVotes::kAtOnce];
+  const std::size_t lanes = (others.size() + kVectors - 1) / kVectors * kVectors;
+  for (std::size_t k = 0; k < lanes; ++k) {
+    const std::uint32_t j = others[std::min(k, others.size() - 1)];
+    for (std::size_t a = 0; a < 3; ++a)
+      q[a][k] = points[j].data()[a], m[a][k] = normals[j].data()[a];
+  }
+  const double* const p = points[i].data();
+  const double* const n = normals[i].data();
   const double at[3] = {p[0], p[1], p[2]}, along[3] = {n[0], n[1], n[2]};
-  for (std::size_t k = 0; k < count; ++k) {
-    const double q[3] = {lanes.point[0][k], lanes.point[1][k], lanes.point[2][k]};
-    const double m[3] = {lanes.normal[0][k], lanes.normal[1][k], lanes.normal[2][k]};
-    votes[k] = vote_of(at, along, q, m);
+  for (std::size_t k = 0; k < lanes; ++k) {
+    const double there[3] = {q[0][k], q[1][k], q[2][k]}, its[3] = {m[0][k], m[1][k], m[2][k]};
+    votes[k] = vote_of(at, along, there, its);
   }
 }
 
@@ -49,19 +54,15 @@ void vote_in_lanes(const double* p, const double* n, const VoteLanes& lanes, std
 struct PointRows {
   const SignVotes& votes;
   std::size_t size() const { return votes.links().size(); }
-  std::size_t width(std::size_t i) const { return votes.of(i).size(); }
-  template <typename Visit>
-  void visit(std::size_t i, const Visit& visit) const {
-    const auto row = votes.links().of(i);
-    const auto of_row = votes.of(i);
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      if (of_row[k] != SignVotes::kNone) visit(row[k], of_row[k]);
-    }
+  std::size_t width(std::size_t i) const { return votes.links().degree(i); }
+  template <typename Wanted, typename Visit>
+  void visit_if(std::size_t i, const Wanted& wanted, const Visit& visit) const {
+    votes.visit_if(i, wanted, visit);
   }
 };
 
-/// Sums of votes between the parts of one round, as compressed rows in blocks of kVotesAtOnce; both
-/// directions are there.
+/// Sums of votes between the parts of one round, as compressed rows in blocks of kPointsAtOnce;
+/// both directions are there.
 struct Links {
   struct Block {
     std::vector<std::size_t> first = {0};
@@ -82,16 +83,16 @@ struct PartRows {
   const Links& links;
   std::size_t size() const { return links.rows; }
   std::size_t width(std::size_t i) const {
-    const auto first = links.blocks[i / kVotesAtOnce].first.begin() +
-                       static_cast<std::ptrdiff_t>(i % kVotesAtOnce);
+    const auto first = links.blocks[i / kPointsAtOnce].first.begin() +
+                       static_cast<std::ptrdiff_t>(i % kPointsAtOnce);
     return first[1] - first[0];
   }
-  template <typename Visit>
-  void visit(std::size_t i, const Visit& visit) const {
-    const Links::Block& block = links.blocks[i / kVotesAtOnce];
-    for (std::size_t k = block.first[i % kVotesAtOnce]; k < block.first[i % kVotesAtOnce + 1];
+  template <typename Wanted, typename Visit>
+  void visit_if(std::size_t i, const Wanted& wanted, const Visit& visit) const {
+    const Links::Block& block = links.blocks[i / kPointsAtOnce];
+    for (std::size_t k = block.first[i % kPointsAtOnce]; k < block.first[i % kPointsAtOnce + 1];
          ++k) {
-      visit(block.target[k], block.vote[k]);
+      if (wanted(block.target[k])) visit(block.target[k], block.vote[k]);
     }
   }
 };
@@ -100,12 +101,13 @@ struct PartRows {
 template <typename Rows>
 std::vector<Join> strongest_links(const Rows& rows, const Progress* progress) {
   std::vector<Join> strongest(rows.size());
-  parallel_blocks(rows.size(), kVotesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(rows.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
     throw_if_cancelled(progress);
     for (std::size_t i = begin; i < end; ++i) {
       std::int64_t best = 0, size = -1;
       auto to = static_cast<std::uint32_t>(i);
-      rows.visit(i, [&](std::uint32_t target, std::int64_t vote) {
+      const auto all = [](std::uint32_t) { return true; };
+      rows.visit_if(i, all, [&](std::uint32_t target, std::int64_t vote) {
         const std::int64_t its_size = std::abs(vote);
         // Branch-free: the strongest is unpredictable.
         const bool better = (its_size > size) | ((its_size == size) & (target < to));
@@ -183,10 +185,10 @@ template <typename Rows>
 Links links_between_parts(const Rows& rows, const Signs& joined, const Progress* progress) {
   const Members members = members_of_parts(joined);
   Links links = {.rows = joined.parts};
-  links.blocks.resize((joined.parts + kVotesAtOnce - 1) / kVotesAtOnce);
-  parallel_blocks(joined.parts, kVotesAtOnce, [&](std::size_t begin, std::size_t end) {
+  links.blocks.resize((joined.parts + kPointsAtOnce - 1) / kPointsAtOnce);
+  parallel_blocks(joined.parts, kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
     throw_if_cancelled(progress);
-    RowSums sums(links.blocks[begin / kVotesAtOnce]);
+    RowSums sums(links.blocks[begin / kPointsAtOnce]);
     for (std::size_t part = begin; part < end; ++part) {
       const auto of_part =
           std::span(members.member)
@@ -195,8 +197,8 @@ Links links_between_parts(const Rows& rows, const Signs& joined, const Progress*
       for (const std::uint32_t i : of_part) most += rows.width(i);
       sums.start(most);
       for (const std::uint32_t i : of_part) {
-        rows.visit(i, [&](std::uint32_t j, std::int64_t vote) {
-          if (joined.part[j] == part) return;
+        const auto elsewhere = [&](std::uint32_t j) { return joined.part[j] != part; };
+        rows.visit_if(i, elsewhere, [&](std::uint32_t j, std::int64_t vote) {
           sums.add(joined.part[j], vote * joined.sign[i] * joined.sign[j]);
         });
       }
@@ -208,32 +210,16 @@ Links links_between_parts(const Rows& rows, const Signs& joined, const Progress*
 
 }  // namespace
 
-SignVotes::SignVotes(std::span<const Vec3> points, std::span<const Vec3> normals,
-                     const Adjacency& links, const Progress* progress)
-    : links_(&links), votes_(links.target.size()) {
-  parallel_blocks(points.size(), kVotesAtOnce, [&](std::size_t begin, std::size_t end) {
-    throw_if_cancelled(progress);
-    VoteLanes lanes = {};
-    std::array<std::int32_t, VoteLanes::kMost> votes;
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto row = links.of(i);
-      std::int32_t* const out = votes_.data() + links.first[i];
-      for (std::size_t first = 0; first < row.size(); first += VoteLanes::kMost) {
-        const auto some = row.subspan(first, std::min(VoteLanes::kMost, row.size() - first));
-        for (std::size_t k = 0; k < some.size(); ++k) {
-          const Vec3 &q = points[some[k]], &m = normals[some[k]];
-          for (int a = 0; a < 3; ++a) lanes.point[a][k] = q[a], lanes.normal[a][k] = m[a];
-        }
-        vote_in_lanes(points[i].data(), normals[i].data(), lanes, (some.size() + 7) / 8 * 8,
-                      votes.data());
-        for (std::size_t k = 0; k < some.size(); ++k) {
-          const bool none =
-              votes[k] == 0 && (normals[i].isZero(0.0) || normals[some[k]].isZero(0.0));
-          out[first + k] = none ? kNone : votes[k];
-        }
-      }
+void SignVotes::cast(std::size_t point, std::span<const std::uint32_t> others,
+                     std::array<std::int32_t, kAtOnce>& votes) const {
+  static_assert(kAtOnce % kVectors == 0);
+  vote_in_lanes(points_.data(), normals_.data(), point, others, votes.data());
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    const bool may_be_none = votes[k] == 0;
+    if (may_be_none && (normals_[point].isZero(0.0) || normals_[others[k]].isZero(0.0))) {
+      votes[k] = kNone;
     }
-  });
+  }
 }
 
 Signs contract(const SignVotes& votes, const Progress* progress) {
@@ -250,11 +236,11 @@ Signs contract(const SignVotes& votes, const Progress* progress) {
 void turn_outvoted_points(const SignVotes& votes, std::vector<std::int8_t>& sign) {
   const auto outvoted = [&](std::size_t i) {
     std::int64_t sum = 0;
-    PointRows{votes}.visit(i, [&](std::uint32_t j, std::int64_t vote) { sum += vote * sign[j]; });
+    votes.visit(i, [&](std::uint32_t j, std::int64_t vote) { sum += vote * sign[j]; });
     return sum * sign[i] < 0;
   };
   std::vector<std::uint8_t> flagged(sign.size());
-  parallel_blocks(sign.size(), kVotesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_blocks(sign.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) flagged[i] = outvoted(i);
   });
   std::vector<std::uint32_t> waiting;
@@ -268,8 +254,9 @@ void turn_outvoted_points(const SignVotes& votes, std::vector<std::int8_t>& sign
     for (const std::uint32_t i : waiting) {
       if (!outvoted(i)) continue;
       sign[i] = static_cast<std::int8_t>(-sign[i]);
-      const auto row = votes.links().of(i);
-      touched.insert(touched.end(), row.begin(), row.end());
+      for (const auto& row : votes.links().of(i)) {
+        touched.insert(touched.end(), row.begin(), row.end());
+      }
     }
     sort_unique(touched);
     waiting = std::move(touched);

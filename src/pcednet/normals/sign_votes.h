@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -7,40 +9,71 @@
 #include <vector>
 
 #include "pcednet/core/progress.h"
-#include "pcednet/core/unset_array.h"
 #include "pcednet/core/vec3.h"
 #include "pcednet/normals/joined_parts.h"
 #include "pcednet/normals/neighbour_graph.h"
 
 namespace pcednet::normals {
 
-/// The votes of linked points for equal signs of their normals, see orient.h. Functions that take a
-/// `progress` throw Error(kCancelled) when it asks to cancel.
+/// The votes of linked points for equal signs of their normals, see orient.h. They are computed
+/// when they are wanted: kept, they would take more memory than all else.
 class SignVotes {
  public:
   static constexpr double kUnanimous = 1 << 20;
-  static constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::min();
+  static constexpr std::size_t kAtOnce = 64;  ///< votes
 
-  /// A unit normal (or zero) for each point; `links` must outlive the votes.
-  SignVotes(std::span<const Vec3> points, std::span<const Vec3> normals, const Adjacency& links,
-            const Progress* progress = nullptr);
+  /// A unit normal (or zero) for each point; all must outlive the votes.
+  SignVotes(std::span<const Vec3> points, std::span<const Vec3> normals, const Adjacency& links)
+      : points_(points), normals_(normals), links_(&links) {}
 
   const Adjacency& links() const { return *links_; }
 
-  /// The votes with links().of(point): negative for opposite signs, kNone if a normal is zero.
-  /// Whole numbers of magnitude at most kUnanimous * 2.8, so sums of votes do not depend on their
-  /// order.
-  std::span<const std::int32_t> of(std::size_t point) const {
-    return {votes_.data() + links_->first[point], links_->of(point).size()};
+  /// Calls visit(other, vote) for every point linked with one, if wanted(other), unless a normal is
+  /// zero. Votes are negative for opposite signs, and whole numbers of magnitude at most kUnanimous
+  /// * 2.8, so sums of votes do not depend on their order.
+  template <typename Wanted, typename Visit>
+  void visit_if(std::size_t point, const Wanted& wanted, const Visit& visit) const {
+    std::array<std::uint32_t, kAtOnce> others;
+    std::array<std::int32_t, kAtOnce> votes;
+    std::size_t count = 0;
+    const auto visit_all = [&] {
+      if (count == 0) return;
+      cast(point, std::span(others).first(count), votes);
+      for (std::size_t k = 0; k < count; ++k) {
+        if (votes[k] != kNone) visit(others[k], votes[k]);
+      }
+      count = 0;
+    };
+    for (const auto& row : links_->of(point)) {
+      for (const std::uint32_t other : row) {
+        others[count] = other;
+        count += wanted(other) ? 1 : 0;
+        if (count == kAtOnce) visit_all();
+      }
+    }
+    visit_all();
+  }
+
+  /// The same for all of them.
+  template <typename Visit>
+  void visit(std::size_t point, const Visit& visit) const {
+    visit_if(
+        point, [](std::uint32_t) { return true; }, visit);
   }
 
  private:
+  static constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::min();
+
+  /// The votes of a point with some others, at most kAtOnce; kNone if a normal is zero.
+  void cast(std::size_t point, std::span<const std::uint32_t> others,
+            std::array<std::int32_t, kAtOnce>& votes) const;
+
+  std::span<const Vec3> points_, normals_;
   const Adjacency* links_;
-  UnsetArray<std::int32_t> votes_;
 };
 
 /// Contracts the graph along the strongest sums of votes (Boruvka's rounds). Points with a zero
-/// normal form parts of their own.
+/// normal form parts of their own. Throws Error(kCancelled) when `progress` asks to cancel.
 Signs contract(const SignVotes& votes, const Progress* progress = nullptr);
 
 /// Flips single points as long as their neighbours outvote them.

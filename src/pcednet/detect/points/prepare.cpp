@@ -64,14 +64,17 @@ Oriented complete_and_orient(const Points& cloud, const PreparedCloud& prepared,
   } else if (signs == Signs::kAny) {
     options.viewpoint = Vec3::Zero();
   }
-  std::vector<Vec3> given(cloud.size(), Vec3::Zero());
+  Oriented oriented{};
   if (cloud.has_normals()) {
+    std::vector<Vec3> given(cloud.size());
     std::replace_copy_if(
         cloud.normals.begin(), cloud.normals.end(), given.begin(),
         [](const Vec3& normal) { return !is_usable(normal); }, Vec3(Vec3::Zero()));
+    oriented.found =
+        normals::complete_and_orient_normals(prepared.positions, given, options, progress);
+  } else {
+    oriented.found = normals::estimate_oriented_normals(prepared.positions, options, progress);
   }
-  Oriented oriented{
-      normals::complete_and_orient_normals(prepared.positions, given, options, progress), 0};
   if (!scanners.empty()) {
     oriented.faced = normals::face_scanners(prepared.positions, oriented.found.normals, scanners);
   }
