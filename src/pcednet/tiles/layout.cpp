@@ -29,7 +29,7 @@ constexpr std::size_t kMostTiles = 1'000'000;
 // The program with its model and read buffers, and bytes per point: for measurements see
 // docs/large.md.
 constexpr std::uint64_t kFixedBytes = 100'000'000, kBytesPerPoint = 300;
-constexpr std::uint64_t kNormalBytes = 150, kNeighbourBytes = 10, kMovedBytes = sizeof(Vec3);
+constexpr std::uint64_t kNormalBytes = 90, kNeighbourBytes = 6, kMovedBytes = sizeof(Vec3);
 constexpr std::uint64_t kAveragedBytes = 60;  ///< there are fewer normals
 
 /// Sums of counts over rectangles of cells. Holds only columns and rows that have points: there may
