@@ -28,18 +28,20 @@ constexpr std::size_t kPointsAtOnce = 1024;
   return static_cast<std::int32_t>(vote + std::copysign(0.5, vote));
 }
 
-constexpr std::size_t kVectors = 8;  // lanes, and so a multiple of their number
+constexpr std::size_t kVector = 8;  ///< doubles of the widest
 
-/// The votes of point `i` with `others`, and of lanes up to a multiple of kVectors.
+/// The votes of point `i` with `others`. Fills whole vectors: up to kVector - 1 votes more.
 PCEDNET_VECTOR_CLONES
 void vote_in_lanes(const Vec3* points, const Vec3* normals, std::size_t i,
                    std::span<const std::uint32_t> others, std::int32_t* __restrict votes) {
   alignas(64) double q[3][SignVotes::kAtOnce], m[3][SignVotes::kAtOnce];
-  const std::size_t lanes = (others.size() + kVectors - 1) / kVectors * kVectors;
+  const std::size_t lanes = (others.size() + kVector - 1) / kVector * kVector;
   for (std::size_t k = 0; k < lanes; ++k) {
     const std::uint32_t j = others[std::min(k, others.size() - 1)];
-    for (std::size_t a = 0; a < 3; ++a)
-      q[a][k] = points[j].data()[a], m[a][k] = normals[j].data()[a];
+    for (std::size_t a = 0; a < 3; ++a) {
+      q[a][k] = points[j].data()[a];
+      m[a][k] = normals[j].data()[a];
+    }
   }
   const double* const p = points[i].data();
   const double* const n = normals[i].data();
@@ -49,17 +51,6 @@ void vote_in_lanes(const Vec3* points, const Vec3* normals, std::size_t i,
     votes[k] = vote_of(at, along, there, its);
   }
 }
-
-/// The links of the first round: every vote of the points.
-struct PointRows {
-  const SignVotes& votes;
-  std::size_t size() const { return votes.links().size(); }
-  std::size_t width(std::size_t i) const { return votes.links().degree(i); }
-  template <typename Wanted, typename Visit>
-  void visit_if(std::size_t i, const Wanted& wanted, const Visit& visit) const {
-    votes.visit_if(i, wanted, visit);
-  }
-};
 
 /// Sums of votes between the parts of one round, as compressed rows in blocks of kPointsAtOnce;
 /// both directions are there.
@@ -78,17 +69,17 @@ struct Links {
   }
 };
 
-/// The links of a later round.
-struct PartRows {
+/// The votes of a later round, as SignVotes are those of the first.
+struct PartVotes {
   const Links& links;
   std::size_t size() const { return links.rows; }
-  std::size_t width(std::size_t i) const {
+  std::size_t degree(std::size_t i) const {
     const auto first = links.blocks[i / kPointsAtOnce].first.begin() +
                        static_cast<std::ptrdiff_t>(i % kPointsAtOnce);
     return first[1] - first[0];
   }
-  template <typename Wanted, typename Visit>
-  void visit_if(std::size_t i, const Wanted& wanted, const Visit& visit) const {
+  template <typename Visit, typename Wanted = Every>
+  void visit(std::size_t i, const Visit& visit, const Wanted& wanted = {}) const {
     const Links::Block& block = links.blocks[i / kPointsAtOnce];
     for (std::size_t k = block.first[i % kPointsAtOnce]; k < block.first[i % kPointsAtOnce + 1];
          ++k) {
@@ -98,16 +89,15 @@ struct PartRows {
 };
 
 /// Every row's link to the target of its strongest vote (the smallest of equals).
-template <typename Rows>
-std::vector<Join> strongest_links(const Rows& rows, const Progress* progress) {
-  std::vector<Join> strongest(rows.size());
-  parallel_blocks(rows.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
+template <typename Votes>
+std::vector<Join> strongest_links(const Votes& votes, const Progress* progress) {
+  std::vector<Join> strongest(votes.size());
+  parallel_blocks(votes.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
     throw_if_cancelled(progress);
     for (std::size_t i = begin; i < end; ++i) {
       std::int64_t best = 0, size = -1;
       auto to = static_cast<std::uint32_t>(i);
-      const auto all = [](std::uint32_t) { return true; };
-      rows.visit_if(i, all, [&](std::uint32_t target, std::int64_t vote) {
+      votes.visit(i, [&](std::uint32_t target, std::int64_t vote) {
         const std::int64_t its_size = std::abs(vote);
         // Branch-free: the strongest is unpredictable.
         const bool better = (its_size > size) | ((its_size == size) & (target < to));
@@ -181,8 +171,8 @@ class RowSums {
 };
 
 /// The sums of votes between the parts.
-template <typename Rows>
-Links links_between_parts(const Rows& rows, const Signs& joined, const Progress* progress) {
+template <typename Votes>
+Links links_between_parts(const Votes& votes, const Signs& joined, const Progress* progress) {
   const Members members = members_of_parts(joined);
   Links links = {.rows = joined.parts};
   links.blocks.resize((joined.parts + kPointsAtOnce - 1) / kPointsAtOnce);
@@ -194,13 +184,14 @@ Links links_between_parts(const Rows& rows, const Signs& joined, const Progress*
           std::span(members.member)
               .subspan(members.first[part], members.first[part + 1] - members.first[part]);
       std::size_t most = 0;
-      for (const std::uint32_t i : of_part) most += rows.width(i);
+      for (const std::uint32_t i : of_part) most += votes.degree(i);
       sums.start(most);
       for (const std::uint32_t i : of_part) {
         const auto elsewhere = [&](std::uint32_t j) { return joined.part[j] != part; };
-        rows.visit_if(i, elsewhere, [&](std::uint32_t j, std::int64_t vote) {
+        const auto add = [&](std::uint32_t j, std::int64_t vote) {
           sums.add(joined.part[j], vote * joined.sign[i] * joined.sign[j]);
-        });
+        };
+        votes.visit(i, add, elsewhere);
       }
       sums.finish();
     }
@@ -212,7 +203,7 @@ Links links_between_parts(const Rows& rows, const Signs& joined, const Progress*
 
 void SignVotes::cast(std::size_t point, std::span<const std::uint32_t> others,
                      std::array<std::int32_t, kAtOnce>& votes) const {
-  static_assert(kAtOnce % kVectors == 0);
+  static_assert(kAtOnce % kVector == 0);
   vote_in_lanes(points_.data(), normals_.data(), point, others, votes.data());
   for (std::size_t k = 0; k < others.size(); ++k) {
     const bool may_be_none = votes[k] == 0;
@@ -223,11 +214,11 @@ void SignVotes::cast(std::size_t point, std::span<const std::uint32_t> others,
 }
 
 Signs contract(const SignVotes& votes, const Progress* progress) {
-  std::vector<Signs> rounds = {follow_joins(strongest_links(PointRows{votes}, progress))};
-  Links links = links_between_parts(PointRows{votes}, rounds.back(), progress);
+  std::vector<Signs> rounds = {follow_joins(strongest_links(votes, progress))};
+  Links links = links_between_parts(votes, rounds.back(), progress);
   while (!links.empty()) {
-    rounds.push_back(follow_joins(strongest_links(PartRows{links}, progress)));
-    links = links_between_parts(PartRows{links}, rounds.back(), progress);
+    rounds.push_back(follow_joins(strongest_links(PartVotes{links}, progress)));
+    links = links_between_parts(PartVotes{links}, rounds.back(), progress);
   }
   for (std::size_t k = rounds.size() - 1; k > 0; --k) join_again(rounds[k - 1], rounds[k]);
   return std::move(rounds.front());

@@ -15,6 +15,11 @@
 
 namespace pcednet::normals {
 
+/// Wants every point.
+struct Every {
+  bool operator()(std::uint32_t) const { return true; }
+};
+
 /// The votes of linked points for equal signs of their normals, see orient.h. They are computed
 /// when they are wanted: kept, they would take more memory than all else.
 class SignVotes {
@@ -27,12 +32,14 @@ class SignVotes {
       : points_(points), normals_(normals), links_(&links) {}
 
   const Adjacency& links() const { return *links_; }
+  std::size_t size() const { return links_->size(); }
+  std::size_t degree(std::size_t point) const { return links_->degree(point); }
 
   /// Calls visit(other, vote) for every point linked with one, if wanted(other), unless a normal is
   /// zero. Votes are negative for opposite signs, and whole numbers of magnitude at most kUnanimous
   /// * 2.8, so sums of votes do not depend on their order.
-  template <typename Wanted, typename Visit>
-  void visit_if(std::size_t point, const Wanted& wanted, const Visit& visit) const {
+  template <typename Visit, typename Wanted = Every>
+  void visit(std::size_t point, const Visit& visit, const Wanted& wanted = {}) const {
     std::array<std::uint32_t, kAtOnce> others;
     std::array<std::int32_t, kAtOnce> votes;
     std::size_t count = 0;
@@ -52,13 +59,6 @@ class SignVotes {
       }
     }
     visit_all();
-  }
-
-  /// The same for all of them.
-  template <typename Visit>
-  void visit(std::size_t point, const Visit& visit) const {
-    visit_if(
-        point, [](std::uint32_t) { return true; }, visit);
   }
 
  private:

@@ -8,6 +8,7 @@
 namespace pcednet::spatial {
 namespace {
 
+/// The largest offset, or nearly, that does not lead from `corner` beyond `value`.
 float at_most(double corner, double value) {
   auto offset = static_cast<float>(value - corner);
   while (corner + offset > value) {
@@ -17,11 +18,7 @@ float at_most(double corner, double value) {
 }
 
 float at_least(double corner, double value) {
-  auto offset = static_cast<float>(value - corner);
-  while (corner + offset < value) {
-    offset = std::nextafter(offset, std::numeric_limits<float>::infinity());
-  }
-  return offset;
+  return -at_most(-corner, -value);
 }
 
 }  // namespace

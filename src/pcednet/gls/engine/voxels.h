@@ -43,11 +43,6 @@ class VoxelSpan {
   std::size_t size() const { return size_; }
   const Vec3& position(std::size_t i) const { return positions_[i]; }
   const MeanNormal& normal(std::size_t i) const { return normals_[i]; }
-  /// Those of a single point follow from its normal, which is 0 if it is unusable.
-  VoxelMoments moments(std::size_t i) const {
-    if (moments_) return moments_[i];
-    return {normals_[i] == MeanNormal{} ? 0.0f : 1.0f, 0.0f, 0.0f};
-  }
   float count(std::size_t i) const { return moments(i).count; }
   Voxel operator[](std::size_t i) const {
     const auto [count, qq, qn] = moments(i);
@@ -72,6 +67,12 @@ class VoxelSpan {
   }
 
  private:
+  /// Those of a single point follow from its normal, which is 0 if it is unusable.
+  VoxelMoments moments(std::size_t i) const {
+    if (moments_) return moments_[i];
+    return {normals_[i] == MeanNormal{} ? 0.0f : 1.0f, 0.0f, 0.0f};
+  }
+
   const Vec3* positions_ = nullptr;
   const MeanNormal* normals_ = nullptr;
   const VoxelMoments* moments_ = nullptr;
