@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "made_clouds.h"
 #include "pcednet/core/random.h"
 #include "pcednet/lines/find_lines.h"
 #include "pcednet/lines/points/ordered_points.h"
@@ -68,6 +69,21 @@ TEST(UnevenLines, FollowTheEdgeBetweenADenseFaceAndASparseOne) {
     EXPECT_GT(length_along_edge(curves), 0.9 * kEdgeLength) << of_wall;
     EXPECT_LT(length_along_edge(curves), 1.01 * kEdgeLength) << of_wall;
     EXPECT_LE(curves.size(), 3u) << of_wall;
+  }
+}
+
+TEST(UnevenLines, DrawEachEdgeOfAMuchFinerPartOnce) {
+  for (const double finer : {4.0, 8.0, 16.0}) {  // exact surfaces took hours
+    Cloud cloud = cube(20000);
+    Random random(14);
+    const double ground = 200.0 * finer * cloud.spacing;
+    for (int i = 0; i < 40000; ++i) {
+      const double x = random.uniform(), y = random.uniform();
+      cloud.add(Vec3(ground * (x - 0.5), ground * (y - 0.5), -0.2), Vec3::UnitZ(), false);
+    }
+    const std::vector<Curve> curves = lines_of(cloud);
+    EXPECT_EQ(curves.size(), 12u) << finer;
+    for (const Curve& curve : curves) EXPECT_NEAR(length_of(curve), 1.0, 0.02) << finer;
   }
 }
 

@@ -145,6 +145,23 @@ TEST(VoxelPyramid, FollowsTheCurveWhereCellsAreTooManyForTheKeys) {
   EXPECT_EQ(changes, 1);
 }
 
+TEST(VoxelPyramid, MergesClumpsBehindTheRangesOfTheForecast) {
+  // The last points of the curve, near (1, 1); a cell of 1e-3 holds hardly two others.
+  for (const int clumped : {0, 20000}) {
+    test::Cloud cloud;
+    Random random(8);
+    for (int i = 0; i < 40000; ++i) {
+      const bool in_clump = i < clumped;
+      const double x = random.uniform(), y = random.uniform();
+      cloud.add(in_clump ? Vec3(0.99 + 1e-5 * x, 0.99 + 1e-5 * y, 0) : Vec3(x, y, 0),
+                Vec3::UnitZ());
+    }
+    const VoxelPyramid pyramid = pyramid_of(cloud, {5e-3});
+    ASSERT_EQ(pyramid.levels.size(), clumped ? 2u : 1u);
+    if (clumped) EXPECT_LT(pyramid.levels[1].voxels.size(), 20010u);
+  }
+}
+
 TEST(VoxelPyramid, LeavesOutPointsWithoutNormal) {
   test::Cloud cloud = test::cube(4000, 1);
   for (std::size_t i = 0; i < 4000; i += 2) cloud.normals[i] = Vec3::Zero();

@@ -15,6 +15,8 @@ namespace {
 
 using spatial::Keyed;
 
+constexpr std::size_t kStretch = 1 << 14;  // members planned, merged or forecast together
+
 // filling() from which a block is merged further: 18 cells with normals of every direction.
 constexpr double kFillsSpace = 4.0;
 constexpr std::size_t kFewestToFill = 18;
@@ -289,10 +291,30 @@ ForecastSums forecast_stretch(VoxelSpan from, const VoxelGrid& grid, Crowd crowd
   return sums;
 }
 
+/// The forecast for the points of the first `length` of every `step` voxels.
+struct Sampling {
+  std::size_t length, step;
+};
+ForecastSums forecast_samples(VoxelSpan from, const VoxelGrid& grid, Crowd crowd,
+                              Sampling sampling) {
+  const auto [length, step] = sampling;
+  std::vector<ForecastSums> samples((from.size() + step - 1) / step);
+  parallel_blocks(from.size(), step,
+                  [&, length = length, step = step](std::size_t begin, std::size_t end) {
+                    samples[begin / step] =
+                        forecast_stretch(from, grid, crowd, begin, std::min(end, begin + length));
+                  });
+  ForecastSums sums;
+  for (const ForecastSums& sample : samples) {
+    sums.points += sample.points;
+    sums.merged += sample.merged, sums.filling += sample.filling;
+  }
+  return sums;
+}
+
 }  // namespace
 
 VoxelArray merge_voxels(VoxelSpan from, const MergeCells& cells) {
-  constexpr std::size_t kStretch = 1 << 14;
   const VoxelGrid grid(from, cells);
   UnsetArray<Keyed> keyed = along_curve(from, grid);
   const std::vector<std::size_t> starts = stretches_of(keyed, grid, kStretch);
@@ -315,22 +337,18 @@ VoxelArray merge_voxels(VoxelSpan from, const MergeCells& cells) {
 }
 
 MergeForecast forecast_merge(VoxelSpan from, const MergeCells& cells) {
-  constexpr std::size_t kStretch = 1 << 14;
   const VoxelGrid grid(from, cells);
   // Clumps far from each other may differ.
   const std::size_t step = grid.has_cubes() ? kStretch : 16 * kStretch;
-  std::vector<ForecastSums> stretches((from.size() + step - 1) / step);
-  parallel_blocks(from.size(), step, [&](std::size_t begin, std::size_t end) {
-    const std::size_t last = std::min(end, begin + kStretch);
-    stretches[begin / step] = forecast_stretch(from, grid, cells.crowd, begin, last);
-  });
-  ForecastSums sums;
-  for (const ForecastSums& stretch : stretches) {
-    sums.points += stretch.points;
-    sums.merged += stretch.merged, sums.filling += stretch.filling;
-  }
+  const ForecastSums sums = forecast_samples(from, grid, cells.crowd, {kStretch, step});
   if (sums.points == 0) return {};
   return {.merged = sums.merged / sums.points, .filling = sums.filling / sums.points};
+}
+
+double least_merged(VoxelSpan from, const MergeCells& cells) {
+  const ForecastSums sums =
+      forecast_samples(from, VoxelGrid(from, cells), cells.crowd, {kStretch / 16, kStretch});
+  return sums.points == 0 ? 1.0 : sums.merged / sums.points;
 }
 
 }  // namespace pcednet::gls

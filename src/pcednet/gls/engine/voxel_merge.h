@@ -27,4 +27,8 @@ struct MergeForecast {
 };
 MergeForecast forecast_merge(VoxelSpan from, const MergeCells& cells);
 
+/// At least about MergeForecast::merged, from short pieces of all ranges: clumps count wherever
+/// they are.
+double least_merged(VoxelSpan from, const MergeCells& cells);
+
 }  // namespace pcednet::gls

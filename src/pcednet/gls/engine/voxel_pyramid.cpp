@@ -14,6 +14,10 @@ namespace {
 /// A level is worth its memory when the average point shares its voxel with most of another.
 constexpr double kWorthwhileMerge = 1.6;
 
+/// least_merged() from which clumps that the forecast does not see are worth it, too: the sums over
+/// their points would cost several times what those over all others do.
+constexpr double kClumped = 8.0;
+
 /// MergeForecast::filling from which a level costs far more than one of a surface. As with merging,
 /// the average point decides, so that a tree before a wall does not coarsen anything. With a gate
 /// every source costs more.
@@ -29,7 +33,9 @@ PyramidPlan::Level plan_level(VoxelSpan finer, MergeCells cells, bool gated, Cro
     if (!gated) crowd = Crowd::kMerge;
     forecast = forecast_merge(finer, cells);
   }
-  return {forecast.merged >= kWorthwhileMerge, cells.crowd};
+  const bool is_worthwhile =
+      forecast.merged >= kWorthwhileMerge || least_merged(finer, cells) >= kClumped;
+  return {is_worthwhile, cells.crowd};
 }
 
 void add_boxes(VoxelLevel& level) {

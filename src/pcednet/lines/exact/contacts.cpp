@@ -5,6 +5,7 @@
 
 #include "pcednet/core/parallel.h"
 #include "pcednet/core/sort_unique.h"
+#include "pcednet/lines/exact/density.h"
 
 namespace pcednet::lines {
 namespace {
@@ -13,6 +14,9 @@ constexpr std::size_t kMembersAtOnce = 512;
 
 // In spacings: of points of other planes, and of free ones, which may be beyond a chamfer.
 constexpr double kToPlanePoint = 2.5, kToFreePoint = 3.5;
+/// As many points as that are near where the cloud is far finer: exact surfaces do not follow
+/// there.
+constexpr std::size_t kTooMany = 2000;
 
 /// Appends the contacts of a point of a plane, with repetitions.
 void add_contacts(std::uint32_t point, std::span<const std::uint32_t> plane_at,
@@ -31,10 +35,31 @@ void add_contacts(std::uint32_t point, std::span<const std::uint32_t> plane_at,
   }
 }
 
+/// Removes the contacts with free points that are too dense.
+void erase_dense(const OrderedPoints& cloud, double spacing, const Progress* progress,
+                 std::vector<PlaneContact>& contacts) {
+  std::vector<std::uint32_t> free_points;
+  for (const PlaneContact& contact : contacts) {
+    if (contact.b == kNoPlane) free_points.push_back(contact.point);
+  }
+  sort_unique(free_points);
+  if (cloud.available(kNearby) < kNearby) return;
+  std::vector<std::uint8_t> dense(cloud.size(), 0);
+  Stage stage(progress, "exact contacts", free_points.size());
+  cloud.for_each_neighbourhood(
+      free_points, kNearby, stage, [&](std::size_t k, std::span<const spatial::Neighbour> others) {
+        dense[free_points[k]] = is_too_dense(others.back().sq_distance, spacing) ? 1 : 0;
+      });
+  std::erase_if(contacts, [&](const PlaneContact& contact) {
+    return contact.b == kNoPlane && dense[contact.point];
+  });
+}
+
 }  // namespace
 
 std::vector<PlaneContact> contacts_of(const OrderedPoints& cloud,
-                                      const std::vector<PlanePatch>& planes, double spacing) {
+                                      const std::vector<PlanePatch>& planes, double spacing,
+                                      const Progress* progress) {
   std::vector<std::uint32_t> plane_at(cloud.size(), kNoPlane), points;
   for (std::uint32_t p = 0; p < planes.size(); ++p) {
     for (const std::uint32_t i : planes[p].members) plane_at[i] = p;
@@ -49,13 +74,14 @@ std::vector<PlaneContact> contacts_of(const OrderedPoints& cloud,
     std::vector<spatial::Neighbour> near;
     for (std::size_t k = begin; k < end; ++k) {
       cloud.within(cloud.position(points[k]), kToFreePoint * spacing, near);
-      add_contacts(points[k], plane_at, near, spacing, found);
+      if (near.size() < kTooMany) add_contacts(points[k], plane_at, near, spacing, found);
     }
     sort_unique(found);
   });
   std::vector<PlaneContact> contacts;
   for (const auto& block : of_blocks) contacts.insert(contacts.end(), block.begin(), block.end());
   sort_unique(contacts);
+  erase_dense(cloud, spacing, progress, contacts);
   return contacts;
 }
 

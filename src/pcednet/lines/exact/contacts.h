@@ -26,7 +26,8 @@ struct PlaneContact {
 
 /// All contacts, each once, in the order of the planes, then of the points.
 std::vector<PlaneContact> contacts_of(const OrderedPoints& cloud,
-                                      const std::vector<PlanePatch>& planes, double spacing);
+                                      const std::vector<PlanePatch>& planes, double spacing,
+                                      const Progress* progress);
 
 /// The contacts of each pair of planes, and of each plane with points of none.
 struct ContactPairs {

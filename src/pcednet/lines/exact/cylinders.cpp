@@ -20,7 +20,8 @@ constexpr std::size_t kLeastOnFacets = 12;
 constexpr double kMostOfLean = 0.5;  ///< of the variance of the distances from a circle: the rest
 constexpr std::size_t kNoCylinder = std::numeric_limits<std::size_t>::max();
 constexpr std::size_t kMostRounds = 12;  ///< of the growth of a cylinder
-constexpr double kPartOfFacets = 1.5;    ///< as many points on facets: the cylinder is part of them
+constexpr std::size_t kFirstBetweenLooks = 256;
+constexpr double kPartOfFacets = 1.5;  ///< as many points on facets: the cylinder is part of them
 
 /// What a cylinder's points lie on, and how near they are to its circle, each and as a root mean
 /// square, in spacings.
@@ -343,7 +344,7 @@ void CylinderGrowth::unite() {
 
 std::vector<ExactCylinder> find_exact_cylinders(const OrderedPoints& cloud, const PlanePatch& plane,
                                                 std::span<const std::uint32_t> points,
-                                                double spacing) {
+                                                double spacing, const Progress* progress) {
   std::vector<ExactCylinder> cylinders;
   const Chart chart(
       cloud.position(points.front()) - plane.height(cloud.position(points.front())) * plane.normal,
@@ -355,6 +356,7 @@ std::vector<ExactCylinder> find_exact_cylinders(const OrderedPoints& cloud, cons
     for (const CylinderKind& kind : {kCylinder, kFacets}) {
       for (const std::size_t least_on : kOnFirstCylinder) {
         for (std::uint32_t i = 0; i < flat.indices.size(); ++i) {
+          if (i % kFirstBetweenLooks == 0) throw_if_cancelled(progress);
           growth.try_at(i, least_on, kind);
         }
       }

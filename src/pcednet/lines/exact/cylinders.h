@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "pcednet/core/progress.h"
 #include "pcednet/lines/curves/fit.h"
 #include "pcednet/lines/exact/planes.h"
 #include "pcednet/lines/points/ordered_points.h"
@@ -21,6 +22,6 @@ struct ExactCylinder {
 /// points or more are on each. They follow from positions alone.
 std::vector<ExactCylinder> find_exact_cylinders(const OrderedPoints& cloud, const PlanePatch& plane,
                                                 std::span<const std::uint32_t> points,
-                                                double spacing);
+                                                double spacing, const Progress* progress);
 
 }  // namespace pcednet::lines

@@ -28,7 +28,7 @@ constexpr std::size_t kPairsAtOnce = 8;
 constexpr double kLongFacet = 12.0;  ///< longer ones are edges of a face that bends
 constexpr double kOneEnd = 1.5;      ///< of folds that continue each other
 constexpr double kExplainedWithin = 0.9, kBeyondEnd = 0.5;  ///< of creases from an edge
-constexpr double kNodesNear = 1.5;  ///< of a crease: nodes of all edges that may explain it
+constexpr double kNodesNear = 1.5;  ///< of a crease: nodes of edges that may explain it
 
 /// A segment where two planes meet.
 struct ExactFold {
@@ -126,7 +126,8 @@ std::vector<ExactCylinder> find_cylinders(
     for (std::size_t k = begin; k < end; ++k) {
       std::vector<std::uint32_t> points;
       for (const PlaneContact& contact : free_points[k]) points.push_back(contact.point);
-      of_planes[k] = find_exact_cylinders(cloud, planes[free_points[k].front().a], points, spacing);
+      of_planes[k] =
+          find_exact_cylinders(cloud, planes[free_points[k].front().a], points, spacing, progress);
     }
     stage.advance(end - begin);
   });
@@ -170,7 +171,7 @@ double along(const Piece& piece, const Vec3& place) {
 
 ExactEdges find_exact_edges(const OrderedPoints& cloud, double spacing, const Progress* progress) {
   const std::vector<PlanePatch> planes = find_exact_planes(cloud, spacing, progress);
-  const std::vector<PlaneContact> contacts = contacts_of(cloud, planes, spacing);
+  const std::vector<PlaneContact> contacts = contacts_of(cloud, planes, spacing, progress);
   const ContactPairs pairs = by_planes(contacts);
   const std::vector<ExactCylinder> cylinders =
       find_cylinders(cloud, planes, pairs.of_free_points, spacing, progress);
@@ -198,6 +199,8 @@ void erase_explained(std::vector<Crease>& creases, const ExactEdges& edges) {
   append(all, edges.cut_off);
   if (all.empty()) return;
   const NodeIndex index(all);
+  double step = 0.0;  // from node to node
+  for (const Piece& edge : all) step = std::max(step, edge.spacing());
   const auto explains = [](const Piece& edge, const Crease& crease) {
     const Vec3 nearest = nearest_on(edge.fit, crease.at);
     const double at = along(edge, nearest), beyond = kBeyondEnd * crease.spacing;
@@ -207,7 +210,7 @@ void erase_explained(std::vector<Crease>& creases, const ExactEdges& edges) {
   };
   std::vector<spatial::Neighbour> near;
   std::erase_if(creases, [&](const Crease& crease) {
-    index.tree.within_unsorted(crease.at, kNodesNear * crease.spacing, near);
+    index.tree.within_unsorted(crease.at, kNodesNear * std::max(crease.spacing, step), near);
     return std::any_of(near.begin(), near.end(), [&](const auto& node) {
       return explains(all[index.piece[node.index]], crease);
     });

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "pcednet/core/eigendecomposition.h"
+#include "pcednet/lines/exact/density.h"
 #include "pcednet/lines/points/plane_sums.h"
 
 namespace pcednet::lines {
@@ -14,6 +15,9 @@ namespace {
 
 constexpr double kProbable = 0.05;  ///< probability of an edge near which planes are sought
 constexpr std::size_t kNearby = 48;
+/// The nearest of a point are within these spacings where the cloud is some ten times as fine:
+/// exact surfaces, which follow the spacing of the whole, leave such points to the creases.
+constexpr double kTooDense = 0.4;
 constexpr std::size_t kMostThrough = 10;     ///< of the nearest, to lay planes through
 constexpr std::size_t kOnFirst[] = {12, 6};  ///< points on a plane that grows; large ones go first
 constexpr std::size_t kLeastMembers = 8, kManyMembers = 64;
@@ -39,6 +43,7 @@ struct Candidates {
   std::vector<std::uint32_t> rows;    ///< of each point of the cloud: its place among these
   std::vector<std::uint32_t> others;
   std::size_t others_of_each;
+  std::vector<std::uint8_t> too_dense;  ///< by row
 
   std::span<const std::uint32_t> near(std::uint32_t row) const {
     return std::span(others).subspan(row * others_of_each, others_of_each);
@@ -59,12 +64,25 @@ std::vector<std::uint32_t> others_of(const OrderedPoints& cloud,
   return found;
 }
 
-Candidates find_candidates(const OrderedPoints& cloud, const Progress* progress) {
+/// Marks the rows of points that are too dense.
+std::vector<std::uint8_t> too_dense(const OrderedPoints& cloud, const Candidates& candidates,
+                                    double spacing) {
+  std::vector<std::uint8_t> marks(candidates.points.size(), 0);
+  if (candidates.others_of_each < kNearby) return marks;
+  for (std::uint32_t row = 0; row < marks.size(); ++row) {
+    const Vec3& at = cloud.position(candidates.points[row]);
+    const Vec3& last = cloud.position(candidates.near(row).back());
+    marks[row] = is_too_dense((last - at).squaredNorm(), spacing) ? 1 : 0;
+  }
+  return marks;
+}
+
+Candidates find_candidates(const OrderedPoints& cloud, double spacing, const Progress* progress) {
   std::vector<std::uint32_t> probable;
   for (std::uint32_t i = 0; i < cloud.size(); ++i) {
     if (cloud.is_edge(i) || cloud.probability(i) >= kProbable) probable.push_back(i);
   }
-  Candidates found{.points = {}, .rows = {}, .others = {}, .others_of_each = 0};
+  Candidates found{.points = {}, .rows = {}, .others = {}, .others_of_each = 0, .too_dense = {}};
   found.rows.assign(cloud.size(), kNoRow);
   Stage looking(progress, "points near edges", probable.size());
   for (const std::uint32_t i : others_of(cloud, probable, looking)) found.rows[i] = 0;
@@ -77,6 +95,7 @@ Candidates find_candidates(const OrderedPoints& cloud, const Progress* progress)
   Stage stage(progress, "exact planes", found.points.size());
   found.others = others_of(cloud, found.points, stage);
   found.others_of_each = cloud.available(kNearby);
+  found.too_dense = too_dense(cloud, found, spacing);
   return found;
 }
 
@@ -113,7 +132,7 @@ class PatchGrowth {
         candidates_(candidates),
         spacing_(spacing),
         reach_(kReachOfPlane * spacing),
-        taken_(candidates.points.size(), 0),
+        taken_(candidates.too_dense),
         in_vain_(candidates.points.size(), 0),
         seen_(candidates.points.size(), 0) {}
 
@@ -298,7 +317,7 @@ std::vector<PlanePatch> united(const OrderedPoints& cloud, const Candidates& can
 std::vector<PlanePatch> find_exact_planes(const OrderedPoints& cloud, double spacing,
                                           const Progress* progress) {
   if (cloud.size() <= kLeastMembers) return {};
-  const Candidates candidates = find_candidates(cloud, progress);
+  const Candidates candidates = find_candidates(cloud, spacing, progress);
   PatchGrowth growth(cloud, candidates, spacing);
   for (const std::size_t least_on : kOnFirst) {
     for (std::uint32_t row = 0; row < candidates.points.size(); ++row) {
