@@ -51,6 +51,17 @@ TEST(Regularise, MakesASegmentOrthogonalToTwoThatAreNot) {
   EXPECT_TRUE(pieces[0].regular && pieces[1].regular && pieces[2].regular);
 }
 
+TEST(Regularise, LeavesATaperThatItsLengthProves) {
+  // 2.9 degrees move the ends of 60 spacings by 1.5, those of 20 by .5.
+  for (const double length : {60.0, 20.0}) {
+    const Vec3 end(length, 20.0 + 0.05 * length, 0);
+    std::vector<Piece> pieces = {straight({0, 0, 0}, {70, 0, 0}), straight({0, 20, 0}, end)};
+    regularise(pieces);
+    EXPECT_EQ(pieces[1].regular, length < 30.0);
+    EXPECT_EQ((pieces[1].ends[1] - end).norm() < 1e-9, length > 30.0);
+  }
+}
+
 TEST(Regularise, LeavesOthersAsTheyAre) {
   std::vector<Piece> pieces = {straight({0, 0, 0}, {60, 0, 0}), straight({0, 0, 0}, {30, 20, 0})};
   const Vec3 before = pieces[1].fit.direction;

@@ -72,6 +72,25 @@ TEST(UnevenLines, FollowTheEdgeBetweenADenseFaceAndASparseOne) {
   }
 }
 
+TEST(UnevenLines, TakeTheSpacingOfTheCloudWhereHardlyAPointIsOffEdges) {
+  // What is left of a cube near its edges, and a stray point or some of its faces.
+  for (const std::size_t others : {1, 20}) {
+    const Cloud whole = cube(60000);
+    Cloud cloud{.spacing = whole.spacing};
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < whole.positions.size(); ++i) {
+      const bool edge = whole.classes[i] == kSharpEdge;
+      const bool stray = !edge && others == 1;
+      if (edge || kept < others) {
+        cloud.add(stray ? Vec3(4, 4, 4) : whole.positions[i], whole.normals[i], edge);
+      }
+      kept += edge ? 0 : 1;
+    }
+    const Sampling sampling = measure_sampling(OrderedPoints(points_of(cloud)));
+    EXPECT_LT(sampling.spacing, 3.0 * whole.spacing) << others;
+  }
+}
+
 TEST(UnevenLines, DrawEachEdgeOfAMuchFinerPartOnce) {
   for (const double finer : {4.0, 8.0, 16.0}) {  // exact surfaces took hours
     Cloud cloud = cube(20000);

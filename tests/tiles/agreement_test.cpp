@@ -102,6 +102,8 @@ TEST_F(Agreement, NeedsDescriptionsOfExtraBytesThatDiffer) {
   EXPECT_EQ(refused(a, a), "");
   const std::string difference = "have different columns or headers, and ";
   EXPECT_TRUE(refused(some_points(), a).starts_with(difference));
+  EXPECT_TRUE(
+      refused(a, {.rows = io::las_test_rows(6, 100, 2), .extra = 2}).starts_with(difference));
   LasTestFile named = a;
   named.records = {{"LASF_Projection", 2112, kUtm}};
   EXPECT_EQ(refused(named, a), "");

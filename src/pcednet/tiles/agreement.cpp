@@ -148,7 +148,11 @@ void count_columns(const std::vector<IndexedInput>& inputs, std::size_t i, Said&
   bool is_form = i == 0;
   for (const Attribute& column : inputs[i].outline.attributes) {
     if (column.name == "scan" && inputs[i].input.scans > 0) continue;  // all have numbers
-    is_form = ++said.columns[column.name] == 1 || is_form;
+    // Undescribed bytes of another number are another column.
+    const std::string name = column.components == 1
+                                 ? column.name
+                                 : fmt::format("{} ({} numbers)", column.name, column.components);
+    is_form = ++said.columns[name] == 1 || is_form;
   }
   if (is_form) said.forms.push_back(i);
 }

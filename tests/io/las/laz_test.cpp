@@ -94,6 +94,17 @@ TEST(Laz, GivesNoiseAndConstantsBack) {
   }
 }
 
+TEST(Laz, GivesManyConstantBytesOfEachPointBack) {
+  const Scratch scratch;
+  for (const unsigned format : {1U, 6U}) {
+    constexpr std::size_t kBytes = 200;
+    const std::string row = las_test_rows(format, 1, kBytes, 4);
+    LasTestFile file{format, 4, "", kBytes};
+    for (int i = 0; i < 50000; ++i) file.rows += row;
+    EXPECT_LT(expect_same(scratch, file).size(), file.rows.size() / 64);
+  }
+}
+
 void expect_read(const Scratch& scratch, const LasTestFile& file, const LazTestLayout& layout) {
   expect_equal(scratch.read("in.las", las_bytes(file)).cloud,
                scratch.read("in.laz", laz_bytes(file, layout)).cloud, file.format);

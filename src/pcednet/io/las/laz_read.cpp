@@ -13,11 +13,12 @@ constexpr unsigned kUnchunked = 1, kChunked = 2, kLayered = 3;
 constexpr std::uint64_t kVariable = laz_record::kVariableSize;
 constexpr std::uint64_t kSymbolsPerByte = 1024;
 
-/// Whether that many bytes of a chunk can encode that many symbols: the adaptive models reach at
-/// most 1024 a byte, and where they would take much memory only 64 are accepted.
-bool may_stand_for(std::uint64_t bytes, std::uint64_t symbols) {
-  constexpr std::uint64_t kMany = std::uint64_t{1} << 20;
-  return symbols / (symbols > kMany ? 64 : kSymbolsPerByte) <= bytes;
+/// Whether that many bytes of a chunk can encode that many symbols, which take `memory` bytes: the
+/// adaptive models reach at most 1024 a byte, 115 if all 50,000 of a chunk are equal, and where
+/// they would take much memory only 128 are accepted.
+bool may_stand_for(std::uint64_t bytes, std::uint64_t symbols, std::uint64_t memory) {
+  constexpr std::uint64_t kMuchMemory = std::uint64_t{1} << 26;
+  return symbols / (memory > kMuchMemory ? 128 : kSymbolsPerByte) <= bytes;
 }
 
 }  // namespace
@@ -32,8 +33,9 @@ LazReader::LazReader(const InputFile& file, LasFile& las, std::vector<std::strin
   if (!record) fail(las_header::kPointFormat, "compressed, but without a laszip record");
   read_items(record->data);
   const std::uint64_t points = las.point_count();
-  const bool holds_all = compressor_ == kUnchunked ? may_stand_for(file_.size() - begin_, points)
-                                                   : points / kSymbolsPerByte <= file_.size();
+  const bool holds_all = compressor_ == kUnchunked
+                             ? may_stand_for(file_.size() - begin_, points, points * record_length_)
+                             : points / kSymbolsPerByte <= file_.size();
   if (!holds_all) {
     fail(las.counts_wide() ? las_header::kPointCount64 : las_header::kPointCount32,
          fmt::format("{} points in a file of {} bytes", points, file_.size()));
@@ -125,7 +127,8 @@ bool LazReader::may_hold(const Entry& chunk) const {
   const LazItem& last = items_.back();
   const std::size_t extra = last.type == 0 && last.version == 2 ? last.size : 1;
   return chunk.points == 0 ||
-         (chunk.bytes >= record_length_ && may_stand_for(chunk.bytes, chunk.points * extra));
+         (chunk.bytes >= record_length_ &&
+          may_stand_for(chunk.bytes, chunk.points * extra, chunk.points * record_length_));
 }
 
 /// Points of the chunk at byte `at` beyond the first `counted`, as far as known without decoding:

@@ -20,7 +20,7 @@ constexpr std::size_t kLeastOnFacets = 12;
 constexpr double kMostOfLean = 0.5;  ///< of the variance of the distances from a circle: the rest
 constexpr std::size_t kNoCylinder = std::numeric_limits<std::size_t>::max();
 constexpr std::size_t kMostRounds = 12;  ///< of the growth of a cylinder
-constexpr std::size_t kFirstBetweenLooks = 256;
+constexpr std::size_t kFirstBetweenLooks = 256, kMembersBetweenLooks = 256;
 constexpr double kPartOfFacets = 1.5;  ///< as many points on facets: the cylinder is part of them
 
 /// What a cylinder's points lie on, and how near they are to its circle, each and as a root mean
@@ -89,8 +89,9 @@ std::optional<CylinderCircle> circle_through(const Vec3& a, const Vec3& b,
 /// Cylinders that grow from place to place.
 class CylinderGrowth {
  public:
-  explicit CylinderGrowth(const CylinderPoints& points)
+  CylinderGrowth(const CylinderPoints& points, const Progress* progress)
       : points_(points),
+        progress_(progress),
         tree_(points.places),
         taken_(points.places.size(), 0),
         seen_(points.places.size(), 0) {}
@@ -126,6 +127,7 @@ class CylinderGrowth {
   bool add(const Cylinder& part, Cylinder& whole);
 
   const CylinderPoints& points_;
+  const Progress* progress_;
   spatial::KdTree tree_;
   std::vector<std::uint8_t> taken_;
   std::vector<std::uint32_t> seen_;  ///< in which spread() a place was last seen
@@ -185,6 +187,7 @@ bool CylinderGrowth::spread(std::uint32_t first) {
   seen_[first] = spreads_;
   std::size_t next_fit = 2 * kLeastOnCylinder;
   for (std::size_t k = 0; k < members_.size(); ++k) {
+    if (k % kMembersBetweenLooks == 0) throw_if_cancelled(progress_);
     tree_.within(points_.places[members_[k]], kLookForCylinder, near);
     for (const auto& other : near) {
       if (taken_[other.index] || seen_[other.index] == spreads_) continue;
@@ -352,7 +355,7 @@ std::vector<ExactCylinder> find_exact_cylinders(const OrderedPoints& cloud, cons
   for (const double side : {1.0, -1.0}) {
     const CylinderPoints flat = seen_from(cloud, plane, chart, side, points, spacing);
     if (flat.indices.size() < kLeastOnCylinder) continue;
-    CylinderGrowth growth(flat);
+    CylinderGrowth growth(flat, progress);
     for (const CylinderKind& kind : {kCylinder, kFacets}) {
       for (const std::size_t least_on : kOnFirstCylinder) {
         for (std::uint32_t i = 0; i < flat.indices.size(); ++i) {

@@ -18,6 +18,7 @@ namespace {
 constexpr double kSnap = 0.07;     ///< sine of the largest turn
 constexpr double kApart = 0.7;     ///< sine of the least angle between two directions with a normal
 constexpr double kMostMove = 2.0;  ///< of a corner, in spacings
+constexpr double kMostOfEnd = 1.0;  ///< of an end by a turn, in spacings: farther, it is no noise
 /// Weights of directions relative to the places of corners: exact to rounding, or a compromise.
 constexpr double kExactly = 1e9, kNearly = 3.0;
 constexpr int kHoldRounds = 30;
@@ -52,6 +53,15 @@ Turned made_orthogonal(const Vec3& own, const std::vector<Reference>& references
     return {turned_to(normal.normalized(), own), {first->piece, reference.piece}};
   }
   return turned;
+}
+
+/// Whether the segment's ends stay about where they are if it takes that direction.
+bool may_turn_to(const Piece& piece, const Vec3& direction) {
+  Fit turned = piece.fit;
+  turned.direction = direction;
+  return std::ranges::all_of(piece.ends, [&](const Vec3& end) {
+    return (nearest_on(turned, end) - end).norm() <= kMostOfEnd * piece.spacing();
+  });
 }
 
 /// A regular segment between two corners.
@@ -206,14 +216,17 @@ void regularise(std::vector<Piece>& pieces) {
   std::vector<Reference> references;
   for (const std::size_t i : order) {
     const Vec3 own = pieces[i].fit.direction;
-    const auto parallel = std::find_if(
-        references.begin(), references.end(),
-        [&](const Reference& reference) { return own.cross(reference.direction).norm() < kSnap; });
+    const auto parallel =
+        std::find_if(references.begin(), references.end(), [&](const Reference& reference) {
+          return own.cross(reference.direction).norm() < kSnap &&
+                 may_turn_to(pieces[i], turned_to(reference.direction, own));
+        });
     Turned turned;
     if (parallel != references.end()) {
       turned = {turned_to(parallel->direction, own), {parallel->piece}};
     } else {
       turned = made_orthogonal(own, references);
+      if (!may_turn_to(pieces[i], turned.direction)) turned = {own, {}};
       references.push_back({turned.direction, i});
     }
     pieces[i].fit.direction = turned.direction;

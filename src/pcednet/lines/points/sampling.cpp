@@ -212,7 +212,8 @@ Sampling measure_sampling(const OrderedPoints& cloud) {
   std::copy_if(all.begin(), all.end(), std::back_inserter(on), is_edge);
   all = some_of(all);
   std::remove_copy_if(all.begin(), all.end(), std::back_inserter(off), is_edge);
-  const std::vector<std::uint32_t>& most = off.empty() ? all : off;
+  // Where nearly all points are of edges the few others tell nothing of them.
+  const std::vector<std::uint32_t>& most = off.size() < kFewSamples ? all : off;
   const std::vector<PlaneSample> around = samples_at(cloud, most);
   const double spacing = typical_spacing(around);
   const double at_edges = typical_spacing(samples_at(cloud, some_of(on)));
