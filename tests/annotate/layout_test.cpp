@@ -43,6 +43,18 @@ TEST(Layout, HoldsEveryFinitePointOnceWithinItsCube) {
   EXPECT_GT(layout.nodes.size(), 5u);
 }
 
+TEST(Layout, GivesFarPointsACubeOfTheirOwn) {
+  std::vector<Vec3> points = random_points(5000);
+  points[7] = Vec3(-4e5, -5e6, 0);
+  const Layout layout = make_layout(points, 0.01);
+  ASSERT_EQ(layout.nodes.size(), 2u);
+  EXPECT_LT(layout.nodes[0].half, 1.0);
+  EXPECT_EQ(layout.nodes[0].points, points.size() - 1);
+  EXPECT_EQ(layout.nodes[0].children, std::vector<std::uint32_t>{1});
+  EXPECT_EQ(layout.node_of[7], 1u);
+  EXPECT_LT((layout.nodes[1].centre - points[7]).norm(), 1e-6);
+}
+
 TEST(Layout, BeginsEveryNodeWithAnEvenSample) {
   const auto points = random_points(200000);
   const Layout layout = make_layout(points, 0.01);

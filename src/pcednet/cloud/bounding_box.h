@@ -38,4 +38,9 @@ void check_extent(std::span<const Vec3> positions);
 
 BoundingBox bounding_box(std::span<const Vec3> positions);
 
+/// The box of the middle 96 % of the places along each axis, widened on all sides by twice its
+/// longest side: points outside are far from all others. `places` must be finite; empty if there
+/// are none.
+BoundingBox box_of_most(std::span<const Vec3> places);
+
 }  // namespace pcednet

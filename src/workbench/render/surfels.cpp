@@ -46,29 +46,12 @@ std::vector<Vec3> distinct(const std::vector<Vec3>& positions) {
                            spatial::firsts_of_places(positions, spatial::curve_order(positions)));
 }
 
-/// The box of the middle 96 % of the places along each axis, widened on all sides by twice its
-/// longest side: points outside are not part of the scene.
-BoundingBox scene_box(const std::vector<Vec3>& positions) {
-  BoundingBox box;
-  std::vector<double> values(positions.size());
-  const std::size_t low = (positions.size() - 1) / 50, high = positions.size() - 1 - low;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::transform(positions.begin(), positions.end(), values.begin(),
-                   [&](const Vec3& p) { return p[axis]; });
-    box.min[axis] = value_at_rank(values, low);
-    box.max[axis] = value_at_rank(values, high);
-  }
-  const double margin = 2.0 * (box.max - box.min).maxCoeff();
-  return {box.min.array() - margin, box.max.array() + margin};
-}
-
 void remove_outliers(Points& points) {
-  const BoundingBox box = scene_box(distinct(points.positions));
+  const BoundingBox box = box_of_most(distinct(points.positions));
   std::size_t kept = 0;
   for (std::size_t i = 0; i < points.positions.size(); ++i) {
-    const Vec3& p = points.positions[i];
-    if ((p.array() < box.min.array()).any() || (p.array() > box.max.array()).any()) continue;
-    points.positions[kept] = p;
+    if (!box.holds(points.positions[i])) continue;
+    points.positions[kept] = points.positions[i];
     points.sources[kept++] = points.sources[i];
   }
   points.positions.resize(kept);

@@ -19,19 +19,32 @@ constexpr std::size_t kSample = 32768;
 
 using Keys = std::vector<spatial::Keyed>;
 
-Keys sorted_keys(std::span<const Vec3> positions, const Vec3& low, double edge) {
+/// The cube of the points to show.
+struct Cube {
+  Vec3 centre;
+  double half;
+
+  explicit Cube(const BoundingBox& box)
+      : centre(box.centre()),
+        half(std::max(0.5 * (box.max - box.min).maxCoeff(), 1e-9) * (1 + 1e-9)) {}
+};
+
+/// The keys of these points along the curve through the cube.
+Keys sorted_keys(std::span<const Vec3> positions, std::span<const std::uint32_t> points,
+                 const Cube& cube) {
   constexpr double kCells = 1u << kLevels;
+  const Vec3 low = cube.centre - Vec3::Constant(cube.half);
+  const double edge = 2 * cube.half;
   Keys keys;
-  keys.reserve(positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (!positions[i].allFinite()) continue;
+  keys.reserve(points.size());
+  for (const std::uint32_t i : points) {
     std::array<std::uint32_t, 3> cell;
     for (int k = 0; k < 3; ++k) {
       const double place = (positions[i][k] - low[k]) / edge * kCells;
       cell[static_cast<std::size_t>(k)] =
           static_cast<std::uint32_t>(std::clamp(place, 0.0, kCells - 1));
     }
-    keys.push_back({spatial::morton_code(cell), static_cast<std::uint32_t>(i)});
+    keys.push_back({spatial::morton_code(cell), i});
   }
   spatial::sort_by_key(keys, 3 * kLevels);
   return keys;
@@ -120,12 +133,30 @@ std::int8_t signed_byte(double value) {
 Layout make_layout(std::span<const Vec3> positions, double spacing) {
   Layout layout;
   layout.node_of.assign(positions.size(), kNoNode);
-  const BoundingBox box = bounding_box(positions);
-  if (box.empty()) return layout;
-  const double half = std::max(0.5 * (box.max - box.min).maxCoeff(), 1e-9) * (1 + 1e-9);
-  Keys keys = sorted_keys(positions, box.centre() - Vec3::Constant(half), 2 * half);
-  layout.order.reserve(keys.size());
-  Builder(layout, spacing).add(std::move(keys), box.centre(), half, 0);
+  std::vector<Vec3> places;
+  for (const Vec3& p : positions) {
+    if (p.allFinite()) places.push_back(p);
+  }
+  const BoundingBox most = box_of_most(places);
+  std::vector<std::uint32_t> near, far;
+  BoundingBox box, far_box;
+  for (std::uint32_t i = 0; i < positions.size(); ++i) {
+    if (!positions[i].allFinite()) continue;
+    const bool is_near = most.holds(positions[i]);
+    (is_near ? near : far).push_back(i);
+    (is_near ? box : far_box).add(positions[i]);
+  }
+  layout.order.reserve(places.size());
+  Builder builder(layout, spacing);
+  const auto add = [&](const std::vector<std::uint32_t>& points, const BoundingBox& their_box) {
+    const Cube cube(their_box);
+    return builder.add(sorted_keys(positions, points, cube), cube.centre, cube.half, 0);
+  };
+  if (!near.empty()) add(near, box);
+  if (!far.empty()) {
+    const std::uint32_t node = add(far, far_box);
+    if (node != 0) layout.nodes[0].children.push_back(node);
+  }
   return layout;
 }
 

@@ -21,7 +21,8 @@ struct Node {
       0;  ///< approximate spacing of drawn points once this node and its ancestors are drawn
 };
 
-/// The finite points of a cloud in an octree; node 0 is the root.
+/// The finite points of a cloud in an octree; node 0 is the root. Points far from all others
+/// (box_of_most()) have cubes of their own, children of the root: they would coarsen every place.
 struct Layout {
   std::vector<Node> nodes = {};
   std::vector<std::uint32_t> order = {};    ///< the points, node after node, each exactly once

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pcednet/core/error.h"
 #include "pcednet/core/json.h"
@@ -40,6 +41,25 @@ void add_note_on_noise(Scene& scene) {
                            ", so few edges are seen here: pcednet classify averages the points");
 }
 
+/// The positions; NaN for those that are none, as they are too far out.
+std::vector<Vec3> shown_places(const Scene& scene) {
+  std::vector<Vec3> places = scene.cloud.positions;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (!scene.prepared.positions[i].allFinite()) {
+      places[i].setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return places;
+}
+
+/// The box of the finite places that are not far from all others.
+BoundingBox bounds_of(std::vector<Vec3> places) {
+  std::erase_if(places, [](const Vec3& p) { return !p.allFinite(); });
+  const BoundingBox most = box_of_most(places);
+  std::erase_if(places, [&](const Vec3& p) { return !most.holds(p); });
+  return bounding_box(places);
+}
+
 }  // namespace
 
 std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
@@ -58,8 +78,10 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
   scene->input = {as_utf8(input.filename().string()), digest_of_file(input), scene->cloud.size()};
   with_name_in_errors(input.string(),
                       [&] { scene->prepared = detect::prepare(scene->cloud, {}, progress); });
-  scene->bounds = bounding_box(scene->cloud.positions);
-  scene->origin = scene->bounds.centre();
+  const std::vector<Vec3> shown = shown_places(*scene);
+  const BoundingBox whole = bounding_box(shown);
+  scene->origin = whole.centre();
+  scene->bounds = bounds_of(shown);
   stage.advance();
   const Progress quiet = without_report(progress);
   scene->boundary = detect::find_boundary(scene->prepared, &quiet);
@@ -78,7 +100,7 @@ std::shared_ptr<const Scene> load_scene(const std::filesystem::path& input,
   add_note_on_float(*scene);
   add_note_on_noise(*scene);
   stage.advance();
-  scene->layout = make_layout(scene->cloud.positions, scene->spacing);
+  scene->layout = make_layout(shown, scene->spacing);
   scene->selector = std::make_unique<Selector>(scene->cloud.positions, scene->prepared.normals,
                                                scene->origin, scene->spacing);
   stage.advance();
