@@ -125,6 +125,12 @@ TEST_F(VirtualCloud, WarnsOfSeveralSystemsAndOfOneThatIsUnknown) {
     EXPECT_EQ(mixed.remarks[1],
               "1 of 2 files name no coordinate system, such as " + scratch.path("b.las").string());
   }
+  // The definitions of one code may differ in their words.
+  std::string other = kUtm;
+  other.replace(other.find("ETRS89 /"), 8, "Europe,");
+  const auto one =
+      write(scratch, {write_las(scratch, "a.las", kUtm), write_las(scratch, "b.las", other)});
+  EXPECT_EQ(one.remarks.size(), io::has_projections() ? 0U : 1U);
   const auto unknown = write(scratch, {write_las(scratch, "a.las", "PROJCS[\"x\"]")});
   ASSERT_EQ(unknown.remarks.size(), 1U);
   EXPECT_TRUE(io::contains(unknown.remarks[0], "left out"));

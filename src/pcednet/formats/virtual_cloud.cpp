@@ -143,7 +143,12 @@ std::vector<std::string> remarks_on(std::span<const VirtualFile> files, std::siz
   if (empty > 0)
     remarks.push_back(fmt::format("{} of {} files have no points", empty, files.size()));
   std::set<std::string> systems;
-  for (const OrderedJson& item : items) systems.insert(item["properties"]["proj:wkt2"]);
+  for (std::size_t i = 0, item = 0; i < files.size(); ++i) {
+    if (files[i].points == 0) continue;  // it has no item
+    const std::string wkt = items[item++]["properties"]["proj:wkt2"];
+    const std::string codes = io::code_text(files[i].coordinate_system);
+    systems.insert(wkt.empty() || codes.empty() ? wkt : codes);  // texts of one code may differ
+  }
   if (systems.size() > 1) {
     remarks.emplace_back("the files are not all of one coordinate system: QGIS takes the first");
   }
