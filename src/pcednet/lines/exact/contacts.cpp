@@ -14,8 +14,7 @@ constexpr std::size_t kMembersAtOnce = 512;
 
 // In spacings: of points of other planes, and of free ones, which may be beyond a chamfer.
 constexpr double kToPlanePoint = 2.5, kToFreePoint = 3.5;
-/// As many points as that are near where the cloud is far finer: exact surfaces do not follow
-/// there.
+/// So many are near only where most of them are too dense.
 constexpr std::size_t kTooMany = 2000;
 
 /// Appends the contacts of a point of a plane, with repetitions.
@@ -38,12 +37,12 @@ void add_contacts(std::uint32_t point, std::span<const std::uint32_t> plane_at,
 /// Removes the contacts with free points that are too dense.
 void erase_dense(const OrderedPoints& cloud, double spacing, const Progress* progress,
                  std::vector<PlaneContact>& contacts) {
+  if (cloud.available(kNearby) < kNearby) return;
   std::vector<std::uint32_t> free_points;
   for (const PlaneContact& contact : contacts) {
     if (contact.b == kNoPlane) free_points.push_back(contact.point);
   }
   sort_unique(free_points);
-  if (cloud.available(kNearby) < kNearby) return;
   std::vector<std::uint8_t> dense(cloud.size(), 0);
   Stage stage(progress, "exact contacts", free_points.size());
   cloud.for_each_neighbourhood(

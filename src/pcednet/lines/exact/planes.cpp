@@ -13,12 +13,8 @@
 namespace pcednet::lines {
 namespace {
 
-constexpr double kProbable = 0.05;  ///< probability of an edge near which planes are sought
-constexpr std::size_t kNearby = 48;
-/// The nearest of a point are within these spacings where the cloud is some ten times as fine:
-/// exact surfaces, which follow the spacing of the whole, leave such points to the creases.
-constexpr double kTooDense = 0.4;
-constexpr std::size_t kMostThrough = 10;     ///< of the nearest, to lay planes through
+constexpr double kProbable = 0.05;        ///< probability of an edge near which planes are sought
+constexpr std::size_t kMostThrough = 10;  ///< of the nearest, to lay planes through
 constexpr std::size_t kOnFirst[] = {12, 6};  ///< points on a plane that grows; large ones go first
 constexpr std::size_t kLeastMembers = 8, kManyMembers = 64;
 constexpr double kLeastSineBetween = 0.25;  ///< of two places seen from a third
